@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* geometry.h: what a ray hits; Embree behind it. World space. [any thread] after build. */
+#ifndef MU_GEOMETRY_H
+#define MU_GEOMETRY_H
+
+#include "core/render/scene.h"
+
+typedef struct mu_geometry mu_geometry;
+
+typedef struct mu_ray {
+    mu_vec3 origin, direction; /* unit */
+    float near, far;
+} mu_ray;
+
+typedef struct mu_hit {
+    mu_vec3 p;
+    mu_vec3 ng;         /* geometric normal, unit, on the side the object's frame calls outside */
+    mu_frame frame;     /* shading frame: n interpolated, t the continuous tangent made orthogonal to n */
+    float uv[2];
+    mu_vec3 dpdu, dpdv; /* world-space derivatives of position by texture coordinates; zero if there are no UVs */
+    float distance;
+    uint32_t object;
+    uint32_t material;  /* index; the grid's material where a grid line is hit */
+} mu_hit;
+
+mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error *error); /* NULL on failure */
+void mu_geometry_free(mu_geometry *geometry);
+_Bool mu_geometry_intersect(const mu_geometry *geometry, const mu_ray *ray, mu_hit *hit);
+_Bool mu_geometry_occluded(const mu_geometry *geometry, const mu_ray *ray);
+/* The ray that leaves `hit` toward `direction` without meeting the surface it left: offset along ng by a bound on
+ * the rounding error of p. */
+mu_ray mu_geometry_leave(const mu_hit *hit, mu_vec3 direction, float far);
+void mu_geometry_bounds(const mu_geometry *geometry, mu_vec3 *min, mu_vec3 *max);
+
+#endif

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* light.h: light arriving at a point: sampled, evaluated, and its density for multiple importance sampling. */
+#ifndef MU_LIGHT_H
+#define MU_LIGHT_H
+
+#include "core/render/scene.h"
+
+typedef struct mu_lights mu_lights;
+
+typedef struct mu_light_sample {
+    mu_vec3 direction; /* unit, toward the light */
+    float distance;    /* infinite for lights at infinity */
+    float radiance[3]; /* of a directional light: irradiance facing it, and pdf 1, delta */
+    float pdf;         /* per steradian, including the choice of the light; 0: nothing to sample */
+    _Bool delta;
+} mu_light_sample;
+
+/* Loads the environment image (through the module that holds OpenImageIO, only if there is one) and builds its
+ * sampling tables. NULL on failure. */
+mu_lights *mu_lights_build(const mu_scene *scene, mu_error *error);
+void mu_lights_free(mu_lights *lights);
+
+/* [any] One light sample as seen from p. u: three uniforms; u[2] chooses the light. */
+void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out);
+/* [any] Radiance arriving from infinity along `direction` (unit, away from the scene), and the pdf with which
+ * mu_lights_sample would have chosen it. */
+void mu_lights_escaped(const mu_lights *lights, mu_vec3 direction, float radiance[3], float *pdf);
+/* [any] Radiance of rectangle light `light`, hit at distance along `direction` from p; the same pdf. */
+void mu_lights_hit(const mu_lights *lights, uint32_t light, mu_vec3 p, mu_vec3 direction, float distance,
+                   float radiance[3], float *pdf);
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * material.h: plugins, and materials made from JSON by a plugin's parameter table.
+ *
+ * "material": "vendor.name" names a type of vendor_material.so, looked for in $MUSURF_PLUGIN_PATH, beside the
+ * program, and in ../lib/musurf relative to it. Everything else in the object is a parameter of that table, except
+ * the keys that the renderer itself serves ("jacobian").
+ */
+#ifndef MU_MATERIAL_H
+#define MU_MATERIAL_H
+
+#include "core/render/document.h"
+#include "plugin/musurf_plugin.h"
+
+/* Shared objects opened so far; each is opened once, and only when something names it. */
+typedef struct mu_plugins mu_plugins;
+
+mu_plugins *mu_plugins_new(void);
+void mu_plugins_free(mu_plugins *plugins); /* after all materials */
+/* NULL on failure: the error says which files were tried, or what the vendor's plugin offers. */
+const musurf_material_type *mu_plugins_type(mu_plugins *plugins, const char *id, mu_error *error);
+/* The files opened, for --explain; NULL past the end. */
+const char *mu_plugins_opened(const mu_plugins *plugins, size_t index);
+
+/* A named map T(u,v) of the texture square; its Jacobian at the hit becomes M ("jacobian" in a material). */
+typedef struct mu_jacobian {
+    enum { MU_JACOBIAN_NONE, MU_JACOBIAN_POWER_SHEAR } map; /* power_shear: T(u,v) = (u, v + amount u^exponent) */
+    double amount, exponent;
+} mu_jacobian;
+
+typedef struct mu_material {
+    const musurf_material_type *type;
+    musurf_material *compiled;
+    musurf_plan plan;
+    mu_jacobian jacobian;   /* if any, "transform" is pushed through slots[0..3] at each hit */
+    float transform[4];     /* the constant "transform" which the Jacobian is multiplied onto: M = J transform */
+} mu_material;
+
+/* The material described by the object at `place`. The plugin's own message about a parameter is put into the
+ * error with that parameter's place in the document. */
+_Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error);
+void mu_material_free(mu_material *material);
+
+#endif

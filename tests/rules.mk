@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# tests/test_*.c are cmocka programs, tests/test_*.py are programs of their own; tests/run runs them all.
+# tests/bench_*.c are benchmarks. Every other tests/*.c is shared by the test programs.
+TEST_SHARED   := $(filter-out tests/test_%.c tests/bench_%.c,$(wildcard tests/*.c))
+TEST_PROGRAMS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+BENCHMARKS    := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/bench_*.c))
+TEST_LIBS      = $(BUILD)/libmusurf_render.a $(BUILD)/libmusurf.a $(RENDER_LIBS)
+
+$(patsubst tests/%.c,$(BUILD)/obj/tests/%.o,$(wildcard tests/*.c)): CPPFLAGS += $(RENDER_CFLAGS)
+$(TEST_PROGRAMS) $(BENCHMARKS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(TEST_SHARED:%.c=$(BUILD)/obj/%.o) \
+                                $(BUILD)/libmusurf_render.a $(BUILD)/libmusurf.a
+	@mkdir -p $(@D)
+	$(CC) $(LDFLAGS) $(filter %.o,$^) $(TEST_LIBS) -lcmocka -o $@
+
+run-test: all $(TEST_PROGRAMS)
+	@BUILD=$(BUILD) $(PYTHON) tests/run $(ONLY)

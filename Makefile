@@ -22,11 +22,12 @@ CPPFLAGS += -D_GNU_SOURCE -DMUSURF_VERSION='"$(VERSION)"' -I.
 LDFLAGS  += $(SANITIZE) -pthread
 
 .DEFAULT_GOAL := all
-.PHONY: all lib clean distclean install uninstall test demo deps help run-test run-demo check-style
+.PHONY: all clean distclean install uninstall test demo bench tables deps help run-test run-demo run-tables asan ubsan tsan
 
 # Rooms: each adds to LIBRARIES, PROGRAMS, MODULES, TEST_PROGRAMS and TESTS.
 LIBRARIES :=
 MODULES   :=
+PUBLIC_HEADERS :=
 PROGRAMS  :=
 TEST_PROGRAMS :=
 TESTS     :=
@@ -55,6 +56,48 @@ test: deps
 	@$(MAKE) --no-print-directory run-test
 demo: deps
 	@$(MAKE) --no-print-directory run-demo
+
+# Libraries, headers, plugins, program, pkg-config files. The program finds its plugins in ../lib/musurf.
+INSTALL ?= install
+install: all
+	$(INSTALL) -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/musurf $(DESTDIR)$(PREFIX)/lib/pkgconfig \
+	              $(DESTDIR)$(PREFIX)/include/musurf $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	$(INSTALL) -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
+	$(INSTALL) -m 755 $(MODULES) $(DESTDIR)$(PREFIX)/lib/musurf
+	$(INSTALL) -m 644 $(BUILD)/libmusurf.a $(BUILD)/libmusurf_render.a $(DESTDIR)$(PREFIX)/lib
+	$(INSTALL) -m 755 $(BUILD)/libmusurf.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib
+	ln -sf libmusurf.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/libmusurf.so.$(SOMAJOR)
+	ln -sf libmusurf.so.$(SOMAJOR) $(DESTDIR)$(PREFIX)/lib/libmusurf.so
+	$(INSTALL) -m 644 $(PUBLIC_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf
+	$(INSTALL) -m 644 $(wildcard scenes/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' scripts/musurf.pc.in \
+	    > $(DESTDIR)$(PREFIX)/lib/pkgconfig/musurf.pc
+
+uninstall:
+	rm -f $(addprefix $(DESTDIR)$(PREFIX)/bin/,$(notdir $(PROGRAMS)))
+	rm -f $(DESTDIR)$(PREFIX)/lib/libmusurf.* $(DESTDIR)$(PREFIX)/lib/libmusurf_render.a
+	rm -f $(DESTDIR)$(PREFIX)/lib/pkgconfig/musurf.pc
+	rm -rf $(DESTDIR)$(PREFIX)/lib/musurf $(DESTDIR)$(PREFIX)/include/musurf $(DESTDIR)$(PREFIX)/share/musurf
+
+# The whole suite under a sanitizer, in a build folder of its own.
+asan ubsan: deps
+	@mkdir -p $(BUILD)/$@ && ln -sfn ../venv $(BUILD)/$@/venv && touch $(BUILD)/$@/.installed
+	$(MAKE) BUILD=$(BUILD)/$@ OPTIMISE='-O1 -g' \
+	    SANITIZE='-fno-omit-frame-pointer -fsanitize=$(if $(filter asan,$@),address,undefined -fno-sanitize-recover=all)' run-test
+tsan: deps
+	@mkdir -p $(BUILD)/$@ && ln -sfn ../venv $(BUILD)/$@/venv && touch $(BUILD)/$@/.installed
+	$(MAKE) BUILD=$(BUILD)/$@ OPTIMISE='-O1 -g' SANITIZE='-fsanitize=thread' ONLY='$(or $(ONLY),abi render)' run-test
+
+help:
+	@echo 'make demo       install what is missing, build, render Figure 1, check against POV-Ray, write a report'
+	@echo 'make test       install what is missing, build, run the test suite (ONLY="words" picks tests by name)'
+	@echo 'make            build everything into $(BUILD)/'
+	@echo 'make bench      speed, as ratios measured in one run'
+	@echo 'make tables     measure the accuracy and speed tables of the README again'
+	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'
+	@echo 'make install    PREFIX=/usr/local DESTDIR= ; also: uninstall'
+	@echo 'make clean      remove what was built; distclean removes $(BUILD)/ with the virtual environment'
+	@echo 'Settings: BUILD=folder CC=gcc WERROR=1 OPTIMISE="-O3 -g" SANITIZE='
 
 clean:
 	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/musurf* $(BUILD)/lib* $(BUILD)/*.so*

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* image_read.c: finds and opens the module. The dynamic loader knows what is open already; no state is kept
+ * here. */
+#include "core/render/image_read.h"
+
+#include <dlfcn.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define MODULE "musurf_oiio.so"
+
+typedef float *(*mu_reader)(const char *file, int *width, int *height, char *message, size_t size);
+
+/* Why the first module that exists could not be opened is what the user needs to know. */
+static void *open_in(const char *folder, size_t length, char *why, size_t size) {
+    char path[PATH_MAX];
+    const int written = snprintf(path, sizeof path, "%.*s/%s", (int)length, folder, MODULE);
+    if (written < 0 || (size_t)written >= sizeof path || access(path, R_OK) != 0) return NULL;
+    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!module && !why[0]) snprintf(why, size, "%s", dlerror());
+    return module;
+}
+
+static void *open_module(char *why, size_t size) {
+    const char *path = getenv("MUSURF_PLUGIN_PATH");
+    void *module = NULL;
+    while (path && *path && !module) {
+        const size_t length = strcspn(path, ":");
+        if (length) module = open_in(path, length, why, size);
+        path += length + (path[length] == ':');
+    }
+    char program[PATH_MAX];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (module || length <= 0) return module;
+    program[length] = 0;
+    char *slash = strrchr(program, '/');
+    if (!slash) return NULL;
+    module = open_in(program, (size_t)(slash - program), why, size);
+    if (module) return module;
+    snprintf(slash, sizeof program - (size_t)(slash - program), "/../lib/musurf");
+    return open_in(program, strlen(program), why, size);
+}
+
+float *mu_image_read(const char *file, int *width, int *height, mu_error *error) {
+    char why[512] = "";
+    void *module = open_module(why, sizeof why);
+    if (!module) {
+        mu_fail(error, "%s: images need the module " MODULE ", which was %s%s", file,
+                why[0] ? "found but does not load: "
+                       : "not found in $MUSURF_PLUGIN_PATH, beside the program or in ../lib/musurf",
+                why);
+        return NULL;
+    }
+    /* Left open: OpenImageIO keeps threads of its own, which must not lose their code. */
+    mu_reader reader;
+    *(void **)&reader = dlsym(module, "mu_oiio_read");
+    if (!reader) {
+        mu_fail(error, "%s: the module " MODULE " does not offer mu_oiio_read; is it of another version?",
+                file);
+        return NULL;
+    }
+    float *pixels = reader(file, width, height, why, sizeof why);
+    if (!pixels) mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
+    return pixels;
+}

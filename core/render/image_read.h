@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * image_read.h: pictures from files, through the module musurf_oiio.so that holds OpenImageIO.
+ *
+ * Opening OpenImageIO costs some 400 ms and 128 MB, so the module is opened here, when the first picture is
+ * read, and not linked. It is looked for in $MUSURF_PLUGIN_PATH, beside the program, and in ../lib/musurf
+ * relative to it.
+ */
+#ifndef MU_IMAGE_READ_H
+#define MU_IMAGE_READ_H
+
+#include "core/render/error.h"
+
+/* Linear RGB, row by row from the top; free() it. Grey is repeated, alpha and further channels are left out.
+ * NULL on failure: missing, truncated, of no known format, or of more than 2^27 pixels. */
+float *mu_image_read(const char *file, int *width, int *height, mu_error *error);
+
+#endif

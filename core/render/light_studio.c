@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * light_studio.c: a photographer's studio without any file: soft boxes and strips before a smooth dark room.
+ *
+ * Metal shows what it reflects: broad boxes give it body, narrow bright strips the crisp lines that
+ * anisotropy stretches, and the dark between them its contrast. Each box is a rectangle in the plane tangent
+ * to the unit sphere at its middle (gnomonic), with edges that fade smoothly, a little brighter inside, as
+ * real ones are. Radiance, +z up, azimuths counter-clockwise from +x; positive everywhere.
+ */
+#include "core/render/light_parts.h"
+
+/* Of the plane at distance 1: half extents along azimuth and elevation, and the width of the fading edge. */
+typedef struct mu_soft_box {
+    mu_vec3 middle, right, up; /* orthonormal: right is towards rising azimuth */
+    float half[2], edge;
+    float radiance[3];
+} mu_soft_box;
+
+/* middle = (cos e cos a, cos e sin a, sin e), right = (-sin a, cos a, 0), up = middle x right. */
+static const mu_soft_box boxes[] = {
+    /* key: large, warm, a = 50 degrees, e = 48 degrees */
+    {{0.43010886f, 0.51258378f, 0.74314483f},
+     {-0.76604444f, 0.64278761f, 0},
+     {-0.47768429f, -0.56928196f, 0.66913061f},
+     {0.50f, 0.32f},
+     0.10f,
+     {9.0f, 8.6f, 8.0f}},
+    /* fill: wide, dim, cool, a = 165, e = 22 */
+    {{-0.89559083f, 0.23997284f, 0.37460659f},
+     {-0.25881905f, -0.96592583f, 0},
+     {0.36184218f, -0.09695532f, 0.92718385f},
+     {0.55f, 0.38f},
+     0.18f,
+     {1.5f, 1.7f, 2.0f}},
+    /* strip: tall, narrow and bright, a = -70, e = 25 */
+    {{0.30997552f, -0.85165074f, 0.42261826f},
+     {0.93969262f, 0.34202014f, 0},
+     {-0.14454396f, 0.39713126f, 0.90630779f},
+     {0.09f, 0.75f},
+     0.05f,
+     {14.0f, 14.0f, 14.5f}},
+    /* second strip, behind, a = -125, e = 35 */
+    {{-0.46984631f, -0.67101007f, 0.57357644f},
+     {0.81915204f, -0.57357644f, 0},
+     {0.32898993f, 0.46984631f, 0.81915204f},
+     {0.06f, 0.60f},
+     0.04f,
+     {10.0f, 9.6f, 9.0f}},
+    /* overhead: broad, a = 0, e = 85 */
+    {{0.08715574f, 0, 0.99619470f},
+     {0, 1, 0},
+     {-0.99619470f, 0, 0.08715574f},
+     {0.45f, 0.28f},
+     0.15f,
+     {3.6f, 3.7f, 3.9f}},
+};
+
+/* 0 below -width, 1 above 0, with continuous slope. */
+static float fade(float inside, float width) {
+    const float t = fminf(fmaxf(1 + inside / width, 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+void mu_studio_radiance(mu_vec3 direction, float radiance[3]) {
+    static const float floor_colour[3] = {0.055f, 0.050f, 0.046f}, horizon[3] = {0.34f, 0.35f, 0.37f},
+                       ceiling[3] = {0.11f, 0.12f, 0.14f};
+    /* A glow along the horizon, falling off faster into the floor, continuous with its slope at z = 0. */
+    const float z = direction.z, glow = z < 0 ? expf(-24 * z * z) : expf(-5 * z * z);
+    for (int c = 0; c < 3; c++) {
+        const float far = z < 0 ? floor_colour[c] : ceiling[c];
+        radiance[c] = far + (horizon[c] - far) * glow;
+    }
+    for (const mu_soft_box *box = boxes; box < boxes + sizeof boxes / sizeof boxes[0]; box++) {
+        const float ahead = mu_dot(direction, box->middle);
+        if (ahead <= 0.2f) continue; /* no box reaches further than 78 degrees from its middle */
+        const float x = mu_dot(direction, box->right) / ahead, y = mu_dot(direction, box->up) / ahead;
+        const float cover =
+            fade(box->half[0] - fabsf(x), box->edge) * fade(box->half[1] - fabsf(y), box->edge);
+        const float falloff =
+            1 - 0.35f *
+                    fminf(x * x / (box->half[0] * box->half[0]) + y * y / (box->half[1] * box->half[1]), 2) /
+                    2;
+        for (int c = 0; c < 3; c++) radiance[c] += cover * falloff * box->radiance[c];
+    }
+}
+
+/* 4 x 4 points in each cell. */
+void mu_studio_means(const float scale[3], uint32_t width, uint32_t height, float *luminance) {
+    enum { FINE = 4 };
+    for (uint32_t row = 0; row < height; row++)
+        for (uint32_t column = 0; column < width; column++) {
+            float sum = 0;
+            for (uint32_t k = 0; k < FINE * FINE; k++) {
+                const float v = ((float)row + ((float)(k / FINE) + 0.5f) / FINE) / (float)height;
+                const float u = ((float)column + ((float)(k % FINE) + 0.5f) / FINE) / (float)width;
+                const float theta = MU_PI_F * v, phi = MU_PI_F * (1 - 2 * u);
+                float rgb[3];
+                mu_studio_radiance(mu_v3(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta)), rgb);
+                for (int c = 0; c < 3; c++) rgb[c] *= scale[c];
+                sum += mu_luminance(rgb);
+            }
+            *luminance++ = sum / (FINE * FINE);
+        }
+}

@@ -23,6 +23,7 @@ struct mu_lights {
     uint32_t around; /* index of the environment, constant or studio; MU_NO_INDEX */
     mu_sky sky;
     mu_rectangle_light *rectangles; /* one for each light; used where it is a rectangle */
+    uint32_t choices;               /* how many have a chance above 0 */
     float *choice;                  /* count + 1 bounds; NULL if nothing is to be drawn */
 };
 
@@ -50,12 +51,14 @@ static double fluence(const mu_lights *lights, uint32_t index, mu_vec3 middle) {
 }
 
 static _Bool make_choice(mu_lights *lights, mu_vec3 middle, mu_error *error) {
-    double sum = 0, able = 0;
+    double sum = 0;
+    uint32_t able = 0;
     for (uint32_t i = 0; i < lights->count; i++) {
         sum += fluence(lights, i, middle);
         able += fluence(lights, i, middle) > 0;
     }
-    if (!(able > 0)) return 1;
+    lights->choices = able;
+    if (!able) return 1;
     lights->choice = calloc((size_t)lights->count + 1, sizeof *lights->choice);
     if (!lights->choice) return mu_fail(error, "not enough memory for %u lights", lights->count);
     double before = 0;
@@ -108,6 +111,10 @@ void mu_lights_free(mu_lights *lights) {
 
 static float chance(const mu_lights *lights, uint32_t index) {
     return lights->choice ? lights->choice[index + 1] - lights->choice[index] : 0;
+}
+
+uint32_t mu_lights_choices(const mu_lights *lights) {
+    return lights->choices;
 }
 
 void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out) {

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * path.h: the path tracer behind integrator.h, with what only comparisons need to choose.
+ *
+ * At each scattering event a light and the BSDF are both sampled; the two are combined by the power heuristic
+ * of Veach, "Robust Monte Carlo methods for light transport simulation", 1997, section 9.2.4.
+ */
+#ifndef MU_PATH_H
+#define MU_PATH_H
+
+#include "core/render/integrator.h"
+#include "core/render/random.h"
+
+typedef struct mu_path_options { /* all zero: what mu_integrator_path does */
+    enum { MU_BOTH, MU_BSDF_ONLY, MU_LIGHT_ONLY } strategy;
+    _Bool independent; /* random numbers without stratification */
+} mu_path_options;
+
+void mu_path_trace(const mu_tracer *tracer, const mu_path_options *options, mu_ray ray, mu_random *random,
+                   void *scratch, mu_radiance *out);
+
+/* The camera ray through pixel (x, y), counted from the top left, spread by the film's filter; u in [0,1)^2.
+ */
+mu_ray mu_camera_ray(const mu_camera *camera, const mu_film_settings *film, uint32_t x, uint32_t y,
+                     const float u[2]);
+
+/* mu_integrator_path with options. */
+void mu_path_pixel(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
+                   uint32_t y, uint32_t sample, void *scratch, mu_radiance *out);
+
+#endif

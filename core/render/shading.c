@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* shading.c: the frame, the map M and the closure at a hit. World space in, local frame out (see shading.h).
+ */
+#include "core/render/shading.h"
+
+/* n and a tangent as near to t as can be. */
+static mu_frame frame_about(mu_vec3 n, mu_vec3 t) {
+    t = mu_normalise(mu_sub(t, mu_scale(n, mu_dot(n, t))));
+    if (!(mu_dot(t, t) > 0.5f)) /* t was along n */
+        t = mu_normalise(mu_cross(n, fabsf(n.x) < 0.5f ? mu_v3(1, 0, 0) : mu_v3(0, 1, 0)));
+    return (mu_frame){t, mu_cross(n, t), n};
+}
+
+void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame, float m[4]) {
+    const mu_jacobian *map = &material->jacobian;
+    const double p00 = (double)mu_dot(hit->dpdu, frame->t), p01 = (double)mu_dot(hit->dpdv, frame->t);
+    const double p10 = (double)mu_dot(hit->dpdu, frame->b), p11 = (double)mu_dot(hit->dpdv, frame->b);
+    const double determinant = p00 * p11 - p01 * p10;
+    /* J of T(u,v) = (u, v + amount u^exponent) is [1 0], [slope 1]; so P J P^-1 = I + slope (second column of
+     * P) (first row of P^-1). */
+    double slope = 0;
+    if (map->map == MU_JACOBIAN_POWER_SHEAR && map->amount != 0)
+        slope = map->amount * map->exponent * pow((double)hit->uv[0], map->exponent - 1);
+    const double s = slope / determinant;
+    const double j00 = 1 + s * p01 * p11, j01 = -s * p01 * p01, j10 = s * p11 * p11, j11 = 1 - s * p11 * p01;
+    const float *t = material->transform;
+    for (int column = 0; column < 2; column++) {
+        m[column] = (float)(j00 * (double)t[column] + j01 * (double)t[2 + column]);
+        m[2 + column] = (float)(j10 * (double)t[column] + j11 * (double)t[2 + column]);
+    }
+    if (isfinite(m[0]) && isfinite(m[1]) && isfinite(m[2]) && isfinite(m[3])) return;
+    for (int i = 0; i < 4; i++) m[i] = t[i];
+}
+
+void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
+                      void *closure) {
+    const mu_material *material = &scene->materials[hit->material].material;
+    shading->hit = hit;
+    shading->frame = hit->frame;
+    shading->ng = hit->ng;
+    shading->type = material->type;
+    shading->closure = closure;
+    _Bool front = mu_dot(wo, hit->ng) > 0;
+    if (!front && scene->objects[hit->object].two_sided) {
+        shading->ng = mu_scale(shading->ng, -1);
+        shading->frame.n = mu_scale(shading->frame.n, -1);
+        shading->frame.b = mu_scale(shading->frame.b, -1);
+        front = 1;
+    }
+    mu_vec3 local = mu_to_local(&shading->frame, wo);
+    if ((local.z > 0) != front) {
+        shading->frame = frame_about(shading->ng, shading->frame.t);
+        local = mu_to_local(&shading->frame, wo);
+    }
+    const float *slots = NULL;
+    if (material->jacobian.map != MU_JACOBIAN_NONE) {
+        mu_shading_jacobian(material, hit, &shading->frame, shading->slots);
+        slots = shading->slots;
+    }
+    const float direction[3] = {local.x, local.y, local.z};
+    shading->lobes = material->type->setup(material->compiled, direction, slots, 0, closure);
+}

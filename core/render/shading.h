@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * shading.h: a hit made ready for its material: which side is up, the local frame, the closure.
+ *
+ * Conventions. The geometric normal decides which side is seen. A two-sided surface seen from behind turns
+ * its frame over about the tangent (n and b change sign). Where an interpolated normal faces away from a
+ * viewer who sees the front, the geometric normal takes its place, so that silhouettes have no black rim. A
+ * direction counts only if the shading frame and the geometric normal agree on its side: nothing leaks
+ * through, nothing is lit from behind.
+ */
+#ifndef MU_SHADING_H
+#define MU_SHADING_H
+
+#include "core/render/geometry.h"
+
+typedef struct mu_shading {
+    const mu_hit *hit;
+    mu_frame frame; /* the material's: world from local */
+    mu_vec3 ng;     /* turned over with the frame */
+    const musurf_material_type *type;
+    void *closure;
+    uint32_t lobes; /* that can be non-zero; 0: black from here */
+    float slots[4]; /* M of this point, where the material's map varies */
+} mu_shading;
+
+/* [any] `shading` and `closure` are valid as long as each other and `hit`. wo: unit, toward the viewer. */
+void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
+                      void *closure);
+
+/* M = P J P^-1 transform: J, a map of the texture square, taken to the tangent plane by P = [dpdu dpdv] in
+ * the frame (t, b). Without usable UVs, or where J is not finite, M = transform. Rows [m00 m01], [m10 m11].
+ */
+void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame, float m[4]);
+
+/* Whether shading frame and geometry agree on which side `world` = `local` points to. */
+static inline _Bool mu_shading_agrees(const mu_shading *shading, mu_vec3 world, float local_z) {
+    return mu_dot(world, shading->ng) * local_z > 0;
+}
+
+#endif

@@ -31,7 +31,11 @@ typedef struct mu_place {
     json_t *value;                 /* borrowed */
 } mu_place;
 
-/* Reads a file of at most 64 MiB. Duplicate keys, NaN, trailing text and nesting beyond jansson's limit are errors. */
+/* Parsed, the worst text takes some fifty times its own size in memory; real ones are a few KiB. */
+#define MU_DOCUMENT_LIMIT (16 << 20)
+
+/* Reads a file ("-": standard input) of at most MU_DOCUMENT_LIMIT bytes. Duplicate keys, NaN, bytes that are not UTF-8,
+ * trailing text and nesting beyond jansson's limit are errors. */
 _Bool mu_document_read(mu_document *document, const char *file, mu_error *error);
 /* The same for a text in memory, which is copied. */
 _Bool mu_document_parse(mu_document *document, const char *name, const char *text, size_t length,

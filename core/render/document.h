@@ -51,6 +51,10 @@ mu_place mu_place_element(const mu_place *parent, size_t index);
 _Bool mu_place_fail(const mu_place *place, mu_error *error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* mu_place_fail, but pointing at the member's name: it is the name that is wrong. */
+_Bool mu_place_fail_key(const mu_place *place, mu_error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Each reads what stands at `place`, checks kind and finiteness, and fails with what would be right. */
 _Bool mu_place_number(const mu_place *place, double min, double max, double *out, mu_error *error);
 _Bool mu_place_numbers(const mu_place *place, size_t count, double min, double max, double *out, mu_error *error);

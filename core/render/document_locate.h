@@ -28,8 +28,4 @@ mu_position mu_position_of(const mu_document *document, size_t offset);
 /* "$.objects[2].material" into `out`, shortened in the middle of long keys and at the front of deep paths. */
 void mu_place_path(const mu_place *place, char *out, size_t size);
 
-/* mu_place_fail, but pointing at the member's name: it is the name that is wrong. */
-_Bool mu_place_fail_key(const mu_place *place, mu_error *error, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
 #endif

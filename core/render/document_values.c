@@ -5,13 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/render/document_locate.h"
-
-/* Appends to a message; what does not fit is left out. */
-static void append(char *out, size_t size, const char *text) {
-    const size_t length = strlen(out);
-    snprintf(out + length, size - length, "%s", text);
-}
+#include "core/render/document.h"
+#include "core/render/text.h"
 
 /* "a string", or a short value itself: what the user wrote. */
 static void describe(const json_t *value, char *out, size_t size) {
@@ -120,30 +115,34 @@ _Bool mu_place_string(const mu_place *place, const char **out, mu_error *error) 
     return 1;
 }
 
-/* `, did you mean "ggx"? Known: ...` */
+/* `; did you mean "ggx"? Known: beckmann ggx gtr`. A long list is shown only where there is no better hint.
+ */
 static void suggest(char *out, size_t size, const char *word, const char *const *known) {
-    out[0] = '\0';
+    char list[512] = "";
+    for (const char *const *k = known; *k; k++) {
+        mu_append(list, sizeof list, k == known ? "" : ", ");
+        mu_append(list, sizeof list, *k);
+    }
     const char *const nearest = mu_nearest(word, known);
+    out[0] = '\0';
     if (nearest) {
-        append(out, size, "; did you mean \"");
-        append(out, size, nearest);
-        append(out, size, "\"?");
+        mu_append(out, size, "; did you mean \"");
+        mu_append(out, size, nearest);
+        mu_append(out, size, "\"?");
+        if (strlen(list) > 160) return;
     }
-    append(out, size, nearest ? " Known:" : "; known:");
-    for (; *known; known++) {
-        append(out, size, " ");
-        append(out, size, *known);
-    }
+    mu_append(out, size, nearest ? " Known: " : "; known: ");
+    mu_append(out, size, list);
 }
 
 _Bool mu_place_choice(const mu_place *place, const char *const *choices, size_t *out, mu_error *error) {
-    char list[512];
+    char list[600];
     if (!json_is_string(place->value)) {
         snprintf(list, sizeof list, "one of");
         for (const char *const *c = choices; *c; c++) {
-            append(list, sizeof list, " \"");
-            append(list, sizeof list, *c);
-            append(list, sizeof list, "\"");
+            mu_append(list, sizeof list, " \"");
+            mu_append(list, sizeof list, *c);
+            mu_append(list, sizeof list, "\"");
         }
         return fail_kind(place, error, list);
     }
@@ -166,7 +165,7 @@ _Bool mu_place_only(const mu_place *place, const char *const *known, mu_error *e
         const char *const *k = known;
         while (*k && strcmp(*k, key) != 0) k++;
         if (*k) continue;
-        char list[512];
+        char list[600];
         suggest(list, sizeof list, key, known);
         const mu_place member = mu_place_member(place, key);
         return mu_place_fail_key(&member, error, "this key is not known%s", list);

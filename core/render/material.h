@@ -5,7 +5,7 @@
  *
  * "material": "vendor.name" names a type of vendor_material.so, looked for in $MUSURF_PLUGIN_PATH, beside the
  * program, and in ../lib/musurf relative to it. Everything else in the object is a parameter of that table, except
- * the keys that the renderer itself serves ("jacobian").
+ * the keys that the renderer itself serves ("jacobian"). Warnings of a plugin go to stderr.
  */
 #ifndef MU_MATERIAL_H
 #define MU_MATERIAL_H

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * command_eval.c: `musurf eval`, JSON Lines in, JSON Lines out. Local frame: z is the macrosurface normal,
+ * directions point away from the surface. D, Dv, f and pdf are per steradian; f holds no cosine.
+ */
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/render/command.h"
+#include "core/render/lines.h"
+#include "core/render/options.h"
+#include "core/render/query.h"
+
+static const mu_option options[] = {
+    {"precision", "float|double", "arithmetic of the evaluation (default: double)"}, {NULL, NULL, NULL}};
+
+static const mu_usage usage = {
+    "eval", "[--precision float|double] [FILE]",
+    "Evaluates materials at given directions. Each line of FILE or standard input is a JSON object; each "
+    "gets one\n"
+    "line in answer, in the same order. Empty lines are passed over.\n",
+    options,
+    "in:   \"material\"  an object as in a scene file: {\"material\": \"musurf.microfacet\", \"ndf\": "
+    "\"ggx\", ...}\n"
+    "      \"wo\"        [x, y, z] toward the viewer; z is along the surface normal; need not be a unit "
+    "vector\n"
+    "      \"wm\"        [x, y, z] a micronormal (optional)\n"
+    "      \"wi\"        [x, y, z] toward the light (optional)\n"
+    "      \"id\"        anything; it is handed back (optional)\n"
+    "out:  always    \"Lambda\" (null where it is infinite), \"sigma\": of wo\n"
+    "      with wm   \"D\" [1/sr], \"G1\", \"Dv\" [1/sr]\n"
+    "      with wi   \"f\" [r,g,b] in 1/sr without the cosine, \"F\" [r,g,b], \"G2\", \"pdf\" [1/sr] of "
+    "sampling wi given wo\n"
+    "      mirrors   \"delta\": true; f and pdf are 0\n"
+    "A line that cannot be answered gets {\"id\", \"error\"}; the others go on, and the exit code is 1.\n"
+    "\n"
+    "example:\n"
+    "  echo '{\"material\": {\"material\": \"musurf.microfacet\", \"ndf\": \"ggx\", \"alpha\": 0.3}, \"wo\": "
+    "[0, 0, 1],\n"
+    "         \"wi\": [1, 0, 1]}' | tr -d '\\n' | musurf eval\n"};
+
+typedef struct evaluation {
+    mu_query_cache cache;
+    mu_json json;
+    musurf_precision precision;
+    const char *name; /* of the file, for messages */
+    size_t lines, bad;
+} evaluation;
+
+static _Bool all_finite(const musurf_probe_values *v) {
+    const double sum = v->sigma + v->D + v->G1 + v->Dv + v->G2 + v->pdf + v->f[0] + v->f[1] + v->f[2] +
+                       v->F[0] + v->F[1] + v->F[2];
+    if (isfinite(sum)) return 1;
+    const double each[] = {v->sigma, v->D,    v->G1,   v->Dv,   v->G2,   v->pdf,
+                           v->f[0],  v->f[1], v->f[2], v->F[0], v->F[1], v->F[2]};
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
+        if (!isfinite(each[i])) return 0;
+    return !isnan(v->Lambda);
+}
+
+static _Bool answer(evaluation *e, const mu_document *document, mu_error *error) {
+    static const char *const known[] = {"material", "wo", "wm", "wi", "id", NULL};
+    const mu_place root = mu_place_root(document);
+    if (!mu_place_only(&root, known, error)) return 0;
+    const mu_place material = mu_place_member(&root, "material"), wo_place = mu_place_member(&root, "wo"),
+                   wm_place = mu_place_member(&root, "wm"), wi_place = mu_place_member(&root, "wi");
+
+    double wo[3], wm[3], wi[3];
+    mu_probed probed;
+    if (!mu_query_direction(&wo_place, wo, error)) return 0;
+    if (wm_place.value && !mu_query_direction(&wm_place, wm, error)) return 0;
+    if (wi_place.value && !mu_query_direction(&wi_place, wi, error)) return 0;
+    if (!mu_query_material(&e->cache, &material, &probed, error)) return 0;
+
+    musurf_probe_values v = {0};
+    const musurf_result result = probed.probe->evaluate(
+        probed.compiled, e->precision, wo, wm_place.value ? wm : NULL, wi_place.value ? wi : NULL, &v);
+    if (result != MUSURF_OK) return mu_query_fail(&root, &probed, result, error);
+    if (!all_finite(&v))
+        return mu_place_fail(&root, error, "%s answered with a number that is not finite", probed.type);
+
+    mu_json *const json = &e->json;
+    mu_json_begin(json);
+    mu_query_put_id(json, document->text, document->length, 0);
+    mu_json_number(json, "Lambda", v.Lambda);
+    mu_json_number(json, "sigma", v.sigma);
+    if (wm_place.value) {
+        mu_json_number(json, "D", v.D);
+        mu_json_number(json, "G1", v.G1);
+        mu_json_number(json, "Dv", v.Dv);
+    }
+    if (wi_place.value) {
+        mu_json_numbers(json, "f", v.f, 3);
+        mu_json_numbers(json, "F", v.F, 3);
+        mu_json_number(json, "G2", v.G2);
+        mu_json_number(json, "pdf", v.pdf);
+    }
+    if (v.delta) mu_json_raw(json, "delta", "true", 4);
+    return 1;
+}
+
+/* True unless standard output failed. */
+static _Bool answer_line(evaluation *e, mu_line status, const char *text, size_t length, size_t number) {
+    mu_error error = {""};
+    mu_document document = {0};
+    _Bool good = 0;
+    e->lines++;
+    if (status == MU_LINE_TOO_LONG)
+        mu_fail(&error, "%s:%zu: the line is longer than %d MiB", e->name, number, MU_DOCUMENT_LIMIT >> 20);
+    else if (mu_document_parse(&document, e->name, text, length, number, &error))
+        good = answer(e, &document, &error);
+    if (!good) {
+        e->bad++;
+        mu_json_begin(&e->json);
+        mu_query_put_id(&e->json, text, status == MU_LINE ? length : 0, 1);
+        mu_json_string(&e->json, "error", error.text);
+    }
+    mu_document_free(&document);
+    return mu_json_write(&e->json, stdout);
+}
+
+static _Bool is_blank(const char *text, size_t length) {
+    for (size_t i = 0; i < length; i++)
+        if (!strchr(" \t\r", text[i]) || !text[i]) return 0;
+    return 1;
+}
+
+static _Bool flush_answers(void *context) {
+    (void)context;
+    return fflush(stdout) == 0;
+}
+
+static int answer_all(evaluation *e, int file) {
+    mu_lines lines = {.file = file, .before_read = flush_answers};
+    const char *text;
+    size_t length;
+    mu_line status;
+    _Bool written = 1;
+    while (written) {
+        status = mu_lines_next(&lines, MU_DOCUMENT_LIMIT, &text, &length);
+        if (status == MU_LINES_END || status == MU_LINES_FAILED) break;
+        if (!is_blank(text, length)) written = answer_line(e, status, text, length, lines.number);
+    }
+    const int failure = lines.failure;
+    mu_lines_free(&lines);
+    errno = 0;
+    if (!written || ferror(stdout) || fflush(stdout) != 0) {
+        fflush(stdout); /* once more, for its reason */
+        fprintf(stderr, "musurf eval: standard output: %s\n",
+                errno ? strerror(errno) : "could not be written");
+        return MU_EXIT_FAILED;
+    }
+    if (failure) return mu_refuse(&usage, "%s: cannot be read: %s", e->name, strerror(failure));
+    if (e->bad) fprintf(stderr, "musurf eval: %zu of %zu lines could not be answered\n", e->bad, e->lines);
+    return e->bad ? MU_EXIT_FAILED : MU_EXIT_OK;
+}
+
+int mu_command_eval(int argc, char **argv) {
+    static const char *const precisions[] = {"float", "double", NULL};
+    int precision = 1, met;
+    const char *input = "-";
+    mu_options given = mu_options_begin(&usage, argc, argv);
+    for (_Bool named = 0; (met = mu_options_next(&given)) != MU_OPTIONS_END;) {
+        if (met == MU_OPTIONS_OPERAND) {
+            if (named) return mu_refuse(&usage, "one FILE at most, but \"%s\" is a second", given.value);
+            named = 1;
+            input = given.value;
+        } else if (met < 0) {
+            return mu_options_exit(met);
+        } else if (!mu_options_choice(&given, precisions, &precision)) {
+            return MU_EXIT_REFUSED;
+        }
+    }
+
+    const _Bool standard = strcmp(input, "-") == 0;
+    const int file = standard ? STDIN_FILENO : open(input, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return mu_refuse(&usage, "%s: cannot be opened: %s", input, strerror(errno));
+    evaluation e = {.precision = precision ? MUSURF_DOUBLE : MUSURF_FLOAT,
+                    .name = standard ? "stdin" : input};
+    mu_error error = {""};
+    const int code =
+        mu_query_cache_make(&e.cache, &error) ? answer_all(&e, file) : mu_refuse(&usage, "%s", error.text);
+    mu_query_cache_free(&e.cache);
+    mu_json_free(&e.json);
+    if (!standard) close(file);
+    return code;
+}

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* material.c: one material from its JSON object: names its type, reads its settings, compiles it. */
+#include "core/render/material.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "core/render/material_settings.h"
+
+/* What the plugin says while compiling goes to the place of the parameter it speaks of. */
+typedef struct listener {
+    const musurf_material_type *type;
+    const mu_place *place;
+    mu_error *error;
+} listener;
+
+static void on_message(void *context, musurf_severity severity, uint32_t param, const char *text) {
+    const listener *l = context;
+    const musurf_param *p = mu_type_find_id(l->type, param);
+    mu_error warning = {""};
+    mu_error *out = severity == MUSURF_ERROR ? l->error : &warning;
+    mu_settings_fail(l->place, p ? p->name : "", out, text ? text : "");
+    if (severity == MUSURF_WARNING) fprintf(stderr, "musurf: warning: %s\n", warning.text);
+}
+
+static _Bool compile(mu_material *material, const mu_settings *settings, const mu_place *place,
+                     mu_error *error) {
+    listener l = {material->type, place, error};
+    const musurf_host host = {
+        .size = sizeof host, .abi_minor = MUSURF_ABI_MINOR, .context = &l, .message = on_message};
+    const musurf_result result =
+        material->type->compile(&host, settings->items, settings->count, &material->compiled);
+    if (result == MUSURF_OK && material->compiled) return 1;
+    material->compiled = NULL;
+    if (result == MUSURF_NO_MEMORY) return mu_place_fail(place, error, "not enough memory for this material");
+    return mu_place_fail(place, error, "%s refused this material (result %d) without saying why",
+                         material->type->id, (int)result);
+}
+
+/* The renderer aligns a thread's scratch to 64 bytes and sizes it by these numbers. */
+static _Bool describe(mu_material *material, const mu_place *place, mu_error *error) {
+    material->plan = (musurf_plan){.size = sizeof material->plan};
+    material->type->describe(material->compiled, &material->plan);
+    const uint32_t alignment = material->plan.closure_alignment;
+    if (alignment > 64 || (alignment & (alignment - 1)) != 0)
+        return mu_place_fail(place, error,
+                             "%s asks for closures aligned to %u bytes; a power of two up to 64 is possible",
+                             material->type->id, alignment);
+    if (material->plan.closure_bytes > 1u << 20)
+        return mu_place_fail(place, error, "%s asks for closures of %u bytes; at most 1 MiB is possible",
+                             material->type->id, material->plan.closure_bytes);
+    return 1;
+}
+
+static _Bool read_jacobian(mu_jacobian *jacobian, const mu_place *place, mu_error *error) {
+    static const char *const keys[] = {"map", "amount", "exponent", NULL};
+    static const char *const maps[] = {"power_shear", NULL};
+    if (!mu_place_only(place, keys, error)) return 0;
+    const mu_place map = mu_place_member(place, "map"), amount = mu_place_member(place, "amount"),
+                   exponent = mu_place_member(place, "exponent");
+    size_t which;
+    if (!mu_place_choice(&map, maps, &which, error)) return 0;
+    jacobian->map = MU_JACOBIAN_POWER_SHEAR;
+    /* The Jacobian is handed to shading as floats. Below exponent 1 it would be infinite at u = 0. */
+    return mu_place_number(&amount, -1e6, 1e6, &jacobian->amount, error) &&
+           mu_place_number(&exponent, 1, 1e3, &jacobian->exponent, error);
+}
+
+/* The Jacobian J makes "transform" vary: the renderer keeps the constant part and pushes J times it through
+ * slots 0 to 3. */
+static _Bool vary_transform(mu_material *material, mu_settings *settings, const mu_place *place,
+                            mu_error *error) {
+    const musurf_param *p = mu_type_find(material->type, "transform");
+    if (!p || p->kind != MUSURF_MATRIX || !(p->flags & MUSURF_MAY_VARY)) {
+        const mu_place member = mu_place_member(place, "jacobian");
+        return mu_place_fail_key(&member, error, "%s has no transform that may vary", material->type->id);
+    }
+    musurf_setting *setting = mu_settings_find(settings, p);
+    if (setting) {
+        /* Once as it stands: the plugin judges the constant part (is it singular?), which it will not see
+         * again. */
+        if (!compile(material, settings, place, error)) return 0;
+        material->type->release(material->compiled);
+        material->compiled = NULL;
+        for (int i = 0; i < 4; i++)
+            if (fabs(setting->values[i]) > 1e18) /* squares of what shading multiplies must be floats */
+                return mu_settings_fail(place, "transform", error,
+                                        "with a jacobian, entries must be within 1e18");
+    } else {
+        setting = mu_settings_add(settings, p);
+    }
+    setting->source = MUSURF_SLOT;
+    setting->slot = 0;
+    setting->values = NULL;
+    return 1;
+}
+
+static void read_transform(mu_material *material, const mu_settings *settings) {
+    const musurf_param *p = mu_type_find(material->type, "transform");
+    if (!p || p->kind != MUSURF_MATRIX) return;
+    const musurf_setting *setting = mu_settings_find(settings, p);
+    for (int i = 0; i < 4; i++) material->transform[i] = (float)(setting ? setting->values : p->initial)[i];
+}
+
+_Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
+    static const char *const reserved[] = {"material", "jacobian", NULL};
+    *material = (mu_material){.transform = {1, 0, 0, 1}};
+    if (!json_is_object(place->value)) return mu_place_only(place, reserved, error);
+
+    const mu_place id = mu_place_member(place, "material"), jacobian = mu_place_member(place, "jacobian");
+    const char *name;
+    if (!mu_place_string(&id, &name, error)) return 0;
+    mu_error why = {""};
+    material->type = mu_plugins_type(plugins, name, &why);
+    if (!material->type) return mu_place_fail(&id, error, "%s", why.text);
+
+    mu_settings settings;
+    if (!mu_settings_read(&settings, material->type, place, reserved, error)) return 0;
+    read_transform(material, &settings);
+    _Bool good = 1;
+    if (jacobian.value)
+        good = read_jacobian(&material->jacobian, &jacobian, error) &&
+               vary_transform(material, &settings, place, error);
+    good = good && compile(material, &settings, place, error) && describe(material, place, error);
+    mu_settings_free(&settings);
+    if (!good) mu_material_free(material);
+    return good;
+}
+
+void mu_material_free(mu_material *material) {
+    if (material->compiled) material->type->release(material->compiled);
+    *material = (mu_material){0};
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* material_settings.h: a JSON object turned into a plugin's settings by the plugin's own parameter table. */
+#ifndef MU_MATERIAL_SETTINGS_H
+#define MU_MATERIAL_SETTINGS_H
+
+#include "core/render/plugin.h"
+
+typedef struct mu_settings {
+    const musurf_material_type *type;
+    musurf_setting *items; /* room for each parameter of the table */
+    double (*values)[4];   /* items[i].values points to values[i] */
+    size_t count;
+} mu_settings;
+
+/* Reads every member of the object at `place`, except the NULL-terminated `reserved` ones. Text is borrowed
+ * from the document. On failure there is nothing to free. */
+_Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, const mu_place *place,
+                       const char *const *reserved, mu_error *error);
+void mu_settings_free(mu_settings *settings);
+
+/* NULL if there is none. */
+const musurf_param *mu_type_find(const musurf_material_type *type, const char *name);
+const musurf_param *mu_type_find_id(const musurf_material_type *type, uint32_t id);
+musurf_setting *mu_settings_find(const mu_settings *settings, const musurf_param *param);
+/* Adds a setting with four zeros for values; there must be none of this parameter yet. */
+musurf_setting *mu_settings_add(mu_settings *settings, const musurf_param *param);
+
+/* Fails at the place of parameter `name` in the object at `place`, or at the object if it is not given there.
+ */
+_Bool mu_settings_fail(const mu_place *place, const char *name, mu_error *error, const char *text);
+
+#endif

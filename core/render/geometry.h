@@ -15,13 +15,15 @@ typedef struct mu_ray {
 
 typedef struct mu_hit {
     mu_vec3 p;
-    mu_vec3 ng;         /* geometric normal, unit, on the side the object's frame calls outside */
+    mu_vec3 ng;         /* geometric normal, unit, on the side the object's frame calls outside, even if the ray
+                         * came from inside: turning over what is two-sided is left to the shading */
     mu_frame frame;     /* shading frame: n interpolated, t the continuous tangent made orthogonal to n */
     float uv[2];
     mu_vec3 dpdu, dpdv; /* world-space derivatives of position by texture coordinates; zero if there are no UVs */
     float distance;
+    float error;        /* how far p may lie from the surface that rays are tested against, along ng: a bound */
     uint32_t object;
-    uint32_t material;  /* index; the grid's material where a grid line is hit */
+    uint32_t material;  /* index; the grid's where a grid line is hit; MU_NO_INDEX on a light: it only emits */
 } mu_hit;
 
 mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error *error); /* NULL on failure */

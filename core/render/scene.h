@@ -67,7 +67,7 @@ typedef struct mu_object {
     float size[2];      /* MU_RECTANGLE: in its xy plane, centred, normal +z, uv in [0,1]^2 along +x, +y */
     float radius;       /* MU_SPHERE: centred; u along longitude, v from the south to the north pole */
     mu_affine to_world;
-    uint32_t material;
+    uint32_t material;  /* index; MU_NO_INDEX for the rectangle of a light, which reflects nothing */
     uint32_t light;     /* rectangle that emits: index of its light, else MU_NO_INDEX */
     _Bool two_sided;    /* turn the frame over when seen from behind; otherwise the back of opaque things is black */
     mu_grid grid;

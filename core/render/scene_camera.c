@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* scene_camera.c: "camera", "film" and "integrator": where from, onto what, and how much work. */
+#include "core/render/affine.h"
+#include "core/render/scene_read.h"
+
+static mu_dvec3 widen(mu_vec3 v) {
+    return mu_d3((double)v.x, (double)v.y, (double)v.z);
+}
+
+static _Bool orient(mu_camera *camera, const mu_place *place, mu_vec3 target, mu_vec3 up, mu_error *error) {
+    const mu_dvec3 forward = mu_dnormalise(mu_dsub(widen(target), widen(camera->position)));
+    const mu_dvec3 upwards = mu_dnormalise(widen(up));
+    const mu_dvec3 right = mu_dcross(forward, upwards);
+    if (!(mu_dlength(forward) > 0))
+        return mu_place_fail(place, error, "position and target are the same point");
+    if (!(mu_dlength(upwards) > 0)) return mu_place_fail(place, error, "up is the zero vector");
+    if (!(mu_dlength(right) > 1e-6))
+        return mu_place_fail(place, error, "up is along the line of sight; it must point aside from it");
+    camera->forward = mu_single(forward);
+    camera->right = mu_single(mu_dnormalise(right));
+    camera->up = mu_single(mu_dcross(mu_dnormalise(right), forward));
+    return 1;
+}
+
+_Bool mu_read_camera(mu_reader *reader) {
+    static const char *const types[] = {"perspective", "orthographic", NULL};
+    mu_camera *camera = &reader->scene->camera;
+    mu_error *error = reader->error;
+    mu_vec3 target = mu_v3(0, 0, 0), up = mu_v3(0, 0, 1);
+    size_t type = 0;
+    float fov = 35, height = 2;
+    const mu_place place = mu_place_member(&reader->root, "camera");
+    camera->position = mu_v3(0, -4, 2);
+    if (place.value) {
+        if (!json_is_object(place.value))
+            return mu_place_only(&place, mu_scene_keys(MU_KEYS_PERSPECTIVE), error);
+        if (!mu_read_choice(&place, "type", types, &type, error) ||
+            !mu_place_only(&place, mu_scene_keys(type ? MU_KEYS_ORTHOGRAPHIC : MU_KEYS_PERSPECTIVE), error) ||
+            !mu_read_vector(&place, "position", &camera->position, error) ||
+            !mu_read_vector(&place, "target", &target, error) || !mu_read_vector(&place, "up", &up, error) ||
+            !mu_read_float(&place, "fov", 1e-3, 179, &fov, error) ||
+            !mu_read_float(&place, "height", 1e-9, MU_LARGEST, &height, error))
+            return 0;
+    }
+    camera->kind = type ? MU_ORTHOGRAPHIC : MU_PERSPECTIVE;
+    camera->half_height = type ? height / 2 : (float)tan((double)fov * (3.14159265358979323846 / 360));
+    return orient(camera, &place, target, up, error);
+}
+
+_Bool mu_read_film(mu_reader *reader) {
+    static const char *const filters[] = {"box", "gaussian", NULL}, *const pixels[] = {"float", "half", NULL};
+    const long long longest_side = 32768, most_pixels = 1 << 26; /* 4 GiB of sums */
+    mu_film_settings *film = &reader->scene->film;
+    mu_error *error = reader->error;
+    size_t filter = 1, half = 1;
+    const mu_place place = mu_place_member(&reader->root, "film");
+    film->width = 640;
+    film->height = 360;
+    if (place.value) {
+        if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_FILM), error) ||
+            !mu_read_count(&place, "width", 1, longest_side, &film->width, error) ||
+            !mu_read_count(&place, "height", 1, longest_side, &film->height, error) ||
+            !mu_read_choice(&place, "filter", filters, &filter, error) ||
+            !mu_read_float(&place, "exposure", -64, 64, &film->exposure, error) ||
+            !mu_read_choice(&place, "pixels", pixels, &half, error))
+            return 0;
+        if ((long long)film->width * film->height > most_pixels)
+            return mu_place_fail(&place, error, "%u x %u pixels are too many; %lld is the limit",
+                                 (unsigned)film->width, (unsigned)film->height, most_pixels);
+    }
+    film->filter = filter ? MU_FILTER_GAUSSIAN : MU_FILTER_BOX;
+    film->filter_radius = filter ? 1.5f : 0.5f;
+    film->half = half == 1;
+    return !place.value || mu_read_float(&place, "radius", 1e-3, 64, &film->filter_radius, error);
+}
+
+_Bool mu_read_integrator(mu_reader *reader) {
+    mu_integrator_settings *integrator = &reader->scene->integrator;
+    mu_error *error = reader->error;
+    const mu_place place = mu_place_member(&reader->root, "integrator");
+    *integrator = (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .seed = 0};
+    if (!place.value) return 1;
+    if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
+        !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||
+        !mu_read_count(&place, "depth", 1, 4096, &integrator->depth, error) ||
+        !mu_read_count(&place, "roulette", 1, 4096, &integrator->roulette, error))
+        return 0;
+    const mu_place seed = mu_place_member(&place, "seed");
+    long long value;
+    if (!seed.value) return 1;
+    if (!mu_place_integer(&seed, 0, 1ll << 53, &value, error)) return 0;
+    integrator->seed = (uint64_t)value;
+    return 1;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* scene_meshes.c: "meshes", a table of files. A file is read when an object first names it, and then only
+ * once. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/render/mesh.h"
+#include "core/render/scene_read.h"
+
+static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, uint32_t *out) {
+    const mu_place place = mu_place_member(definition, "file");
+    mu_scene *scene = reader->scene;
+    mu_error reason = {""};
+    mu_mesh mesh;
+    uint32_t dropped = 0;
+    char *path = mu_scene_path(reader, json_string_value(place.value));
+    if (!path) return mu_fail(reader->error, "not enough memory for the scene");
+    const _Bool ok = mu_mesh_read(&mesh, path, &dropped, &reason);
+    free(path);
+    if (!ok) return mu_place_fail(&place, reader->error, "%s", reason.text);
+    if (dropped) {
+        char text[96];
+        snprintf(text, sizeof text, "%u triangles without area were left out", (unsigned)dropped);
+        mu_scene_warn(&place, text);
+    }
+    mesh.name = strdup(name);
+    if (!mesh.name ||
+        !mu_append((void **)&scene->meshes, &scene->mesh_count, sizeof *scene->meshes, reader->error)) {
+        mu_mesh_free(&mesh);
+        return mu_fail(reader->error, "not enough memory for the scene");
+    }
+    *out = scene->mesh_count - 1;
+    scene->meshes[*out] = mesh;
+    return 1;
+}
+
+_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, uint32_t *out) {
+    const char *name;
+    if (!mu_place_string(place, &name, reader->error)) return 0;
+    for (uint32_t i = 0; i < reader->scene->mesh_count; ++i)
+        if (!strcmp(reader->scene->meshes[i].name, name)) {
+            *out = i;
+            return 1;
+        }
+    const mu_place definition = mu_place_member(&reader->meshes, name);
+    if (!definition.value) return mu_fail_unknown(place, reader->meshes.value, "mesh", reader->error);
+    return load(reader, &definition, name, out);
+}
+
+_Bool mu_check_meshes(mu_reader *reader) {
+    const char *name;
+    json_t *value;
+    json_object_foreach(reader->meshes.value, name, value) {
+        const mu_place definition = mu_place_member(&reader->meshes, name);
+        const char *file;
+        if (!mu_place_only(&definition, mu_scene_keys(MU_KEYS_MESH), reader->error)) return 0;
+        const mu_place place = mu_place_member(&definition, "file");
+        if (!mu_place_string(&place, &file, reader->error)) return 0;
+        char *path = mu_scene_path(reader, file);
+        if (!path) return mu_fail(reader->error, "not enough memory for the scene");
+        if (access(path, R_OK)) {
+            mu_place_fail(&place, reader->error, "%.500s: %s", path, strerror(errno));
+            free(path);
+            return 0;
+        }
+        free(path);
+    }
+    return 1;
+}
+
+static _Bool has_direction(const mu_scene *scene, uint32_t material) {
+    return (scene->materials[material].material.plan.needs & MUSURF_NEEDS_TANGENT) != 0;
+}
+
+_Bool mu_make_scene_tangents(mu_reader *reader) {
+    mu_scene *scene = reader->scene;
+    for (uint32_t i = 0; i < scene->object_count; ++i) {
+        const mu_object *object = &scene->objects[i];
+        if (object->shape != MU_MESH) continue;
+        if (!has_direction(scene, object->material) &&
+            !(object->grid.lines && has_direction(scene, object->grid.material)))
+            continue;
+        if (!mu_mesh_make_tangents(&scene->meshes[object->mesh], reader->error)) return 0;
+    }
+    return 1;
+}

@@ -15,32 +15,33 @@
 
 typedef float *(*mu_reader)(const char *file, int *width, int *height, char *message, size_t size);
 
-/* Why the first module that exists could not be opened is what the user needs to know. */
+/* The first file of that name is taken; if it does not load, `why` says so and no other is tried in its
+ * place. */
 static void *open_in(const char *folder, size_t length, char *why, size_t size) {
     char path[PATH_MAX];
     const int written = snprintf(path, sizeof path, "%.*s/%s", (int)length, folder, MODULE);
     if (written < 0 || (size_t)written >= sizeof path || access(path, R_OK) != 0) return NULL;
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (!module && !why[0]) snprintf(why, size, "%s", dlerror());
+    if (!module) snprintf(why, size, "%s", dlerror());
     return module;
 }
 
 static void *open_module(char *why, size_t size) {
     const char *path = getenv("MUSURF_PLUGIN_PATH");
     void *module = NULL;
-    while (path && *path && !module) {
+    while (path && *path && !module && !why[0]) {
         const size_t length = strcspn(path, ":");
         if (length) module = open_in(path, length, why, size);
         path += length + (path[length] == ':');
     }
     char program[PATH_MAX];
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (module || length <= 0) return module;
+    if (module || why[0] || length <= 0) return module;
     program[length] = 0;
     char *slash = strrchr(program, '/');
     if (!slash) return NULL;
     module = open_in(program, (size_t)(slash - program), why, size);
-    if (module) return module;
+    if (module || why[0]) return module;
     snprintf(slash, sizeof program - (size_t)(slash - program), "/../lib/musurf");
     return open_in(program, strlen(program), why, size);
 }

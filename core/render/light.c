@@ -117,6 +117,17 @@ uint32_t mu_lights_choices(const mu_lights *lights) {
     return lights->choices;
 }
 
+size_t mu_lights_table_bytes(const mu_lights *lights) {
+    const size_t width = lights->sky.table.width, height = lights->sky.table.height;
+    if (!height) return 0;
+    return (height + 1 + height * (width + 1)) * sizeof(float) + height * sizeof(mu_sphere_row);
+}
+
+size_t mu_lights_image_bytes(const mu_lights *lights) {
+    if (!lights->sky.pixels) return 0;
+    return 3 * sizeof(float) * (size_t)lights->sky.width * (size_t)lights->sky.height;
+}
+
 void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out) {
     *out = (mu_light_sample){.direction = {0, 0, 1}, .distance = INFINITY};
     if (!lights->choice) return;

@@ -23,6 +23,9 @@ void mu_lights_free(mu_lights *lights);
 
 /* [any] How many lights mu_lights_sample chooses among: with 0 it has nothing to sample, with 1 it ignores u[2]. */
 uint32_t mu_lights_choices(const mu_lights *lights);
+/* What was built: the sampling table of the environment or studio, and the environment's pixels. */
+size_t mu_lights_table_bytes(const mu_lights *lights);
+size_t mu_lights_image_bytes(const mu_lights *lights);
 /* [any] One light sample as seen from p. u: three uniforms; u[2] chooses the light. */
 void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out);
 /* [any] Radiance arriving from infinity along `direction` (unit, away from the scene), and the pdf with which

@@ -50,6 +50,7 @@ typedef struct evaluation {
     musurf_precision precision;
     const char *name; /* of the file, for messages */
     size_t lines, bad;
+    int output_failure; /* errno of the write that failed */
 } evaluation;
 
 static _Bool all_finite(const musurf_probe_values *v) {
@@ -121,7 +122,9 @@ static _Bool answer_line(evaluation *e, mu_line status, const char *text, size_t
         mu_json_string(&e->json, "error", error.text);
     }
     mu_document_free(&document);
-    return mu_json_write(&e->json, stdout);
+    if (mu_json_write(&e->json, stdout)) return 1;
+    e->output_failure = errno;
+    return 0;
 }
 
 static _Bool is_blank(const char *text, size_t length) {
@@ -131,12 +134,14 @@ static _Bool is_blank(const char *text, size_t length) {
 }
 
 static _Bool flush_answers(void *context) {
-    (void)context;
-    return fflush(stdout) == 0;
+    evaluation *e = context;
+    if (fflush(stdout) == 0) return 1;
+    e->output_failure = errno;
+    return 0;
 }
 
 static int answer_all(evaluation *e, int file) {
-    mu_lines lines = {.file = file, .before_read = flush_answers};
+    mu_lines lines = {.file = file, .before_read = flush_answers, .context = e};
     const char *text;
     size_t length;
     mu_line status;
@@ -148,11 +153,8 @@ static int answer_all(evaluation *e, int file) {
     }
     const int failure = lines.failure;
     mu_lines_free(&lines);
-    errno = 0;
-    if (!written || ferror(stdout) || fflush(stdout) != 0) {
-        fflush(stdout); /* once more, for its reason */
-        fprintf(stderr, "musurf eval: standard output: %s\n",
-                errno ? strerror(errno) : "could not be written");
+    if (e->output_failure || !flush_answers(e)) {
+        fprintf(stderr, "musurf eval: standard output: %s\n", strerror(e->output_failure));
         return MU_EXIT_FAILED;
     }
     if (failure) return mu_refuse(&usage, "%s: cannot be read: %s", e->name, strerror(failure));

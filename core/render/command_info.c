@@ -52,6 +52,20 @@ static void print_range(const json_t *p) {
     }
 }
 
+/* Indented, with lines broken between words. */
+static void print_doc(const char *text) {
+    size_t column = 0;
+    while (*text) {
+        const size_t length = strcspn(text, " ");
+        if (column > 0 && column + 1 + length > 100) column = 0, putchar('\n');
+        printf("%s%.*s", column ? " " : "      ", (int)length, text);
+        column += (column ? 1 : 6) + length;
+        text += length;
+        text += strspn(text, " ");
+    }
+    putchar('\n');
+}
+
 static void print_param(const json_t *p) {
     printf("  %s\n      %s", text_of(p, "name"), text_of(p, "kind"));
     const json_t *choices = json_object_get(p, "choices");
@@ -62,12 +76,11 @@ static void print_param(const json_t *p) {
     printf("; default ");
     print_value(json_object_get(p, "default"));
     if (json_is_true(json_object_get(p, "may_vary"))) printf("; may vary over the surface");
-    printf("\n      %s\n", text_of(p, "doc"));
+    putchar('\n');
+    print_doc(text_of(p, "doc"));
 }
 
-static void print_text(const json_t *all) {
-    const json_t *build = json_object_get(all, "build"), *plugin = json_object_get(all, "plugin"),
-                 *material = json_object_get(all, "material");
+static void print_build(const json_t *build) {
     printf("musurf %s, %s\n", text_of(build, "version"), text_of(build, "compiler"));
     const char *key, *separator = "libraries: ";
     json_t *value;
@@ -75,7 +88,15 @@ static void print_text(const json_t *all) {
         printf("%s%s %s", separator, key, json_string_value(value));
         separator = ", ";
     }
-    printf("\nplugin: %s %s (%s), interface %s, %s\n", text_of(plugin, "name"), text_of(plugin, "version"),
+    putchar('\n');
+}
+
+static void print_text(const json_t *all) {
+    const json_t *build = json_object_get(all, "build"), *plugin = json_object_get(all, "plugin"),
+                 *material = json_object_get(all, "material");
+    print_build(build);
+    json_t *value;
+    printf("plugin: %s %s (%s), interface %s, %s\n", text_of(plugin, "name"), text_of(plugin, "version"),
            text_of(plugin, "license"), text_of(build, "abi"), text_of(plugin, "file"));
     size_t i;
     json_array_foreach(json_object_get(plugin, "materials"), i, value)
@@ -99,7 +120,13 @@ static json_t *collect(const musurf_plugin *plugin, const char *file, const musu
 static int show(mu_plugins *plugins, const char *id, _Bool as_json, _Bool as_schema) {
     mu_error error = {""};
     const musurf_material_type *type = mu_plugins_type(plugins, id, &error);
-    if (!type) return mu_refuse(&usage, "%s", error.text);
+    if (!type) {
+        /* The build is known all the same; without it there would be nothing to report a bug with. */
+        json_t *build = mu_info_build();
+        if (build && !as_json && !as_schema) print_build(build);
+        json_decref(build);
+        return mu_refuse(&usage, "%s", error.text);
+    }
     char vendor[65];
     snprintf(vendor, sizeof vendor, "%.*s", (int)strcspn(id, "."), id);
     const char *file;

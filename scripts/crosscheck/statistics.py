@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Means over realisations, their standard errors, and how far chance may carry them."""
+import functools
+
+import mpmath
+import numpy as np
+
+FAMILY = 0.01  # the chance that a right core fails anywhere in one validation
+
+
+def mean(values):
+    return float(np.mean(values))
+
+
+def standard_error(values):
+    """Of the mean over realisations, the first axis."""
+    values = np.asarray(values, float)
+    return values.std(0, ddof=1) / np.sqrt(len(values))
+
+
+def ratio(top, bottom):
+    """(sum top / sum bottom, its standard error) from independent blocks, the last axis."""
+    value = top.sum(-1) / bottom.sum(-1)
+    count = top.shape[-1]
+    residual = top - value[..., None] * bottom
+    return value, np.sqrt((residual**2).sum(-1) * count / (count - 1)) / bottom.sum(-1)
+
+
+def dependence(both, a, b, every):
+    """(sum both / sum of what independence within each class predicts, its standard error); [class, block]."""
+    total_a, total_b, count = (x.sum(-1, keepdims=True) for x in (a, b, every))
+    count = np.maximum(count, 1)  # an empty class adds nothing
+    expected = (total_a * total_b / count).sum()
+    value = both.sum() / expected
+    change = (a * total_b + b * total_a) / count - every * total_a * total_b / count**2
+    residual = (both - value * change).sum(0) / expected
+    return float(value), float(np.sqrt((residual**2).sum() * residual.size / (residual.size - 1)))
+
+
+def small_sample(count):
+    """Mean of a sample's standard deviation over the true one, for normal values."""
+    return float(mpmath.sqrt(2 / mpmath.mpf(count - 1)) * mpmath.gamma(mpmath.mpf(count) / 2) / mpmath.gamma((mpmath.mpf(count) - 1) / 2))
+
+
+@functools.cache
+def student(freedom, tests):
+    """Two-sided quantile of Student's t for one of the given number of tests at the family's level (Sidak)."""
+    level = 1 - (1 - FAMILY) ** (1 / tests)
+
+    def tail(t):
+        return mpmath.betainc(mpmath.mpf(freedom) / 2, 0.5, 0, freedom / (freedom + t * t), regularized=True) - level
+
+    low, high = mpmath.mpf(0), mpmath.mpf(2)
+    while tail(high) > 0:
+        high *= 2
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if tail(middle) > 0 else (low, middle)
+    return float(high)
+
+
+def chance_variation(errors):
+    """Mean and standard deviation of the total variation that normal errors of the bins make by themselves."""
+    errors = np.asarray(errors)
+    return (float(0.5 * np.sqrt(2 / np.pi) * errors.sum()),
+            float(0.5 * np.sqrt((1 - 2 / np.pi) * (errors**2).sum())))

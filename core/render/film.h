@@ -31,7 +31,7 @@ typedef struct mu_film {
     mu_pixel *pixels; /* row by row from the top */
     double seconds;   /* spent rendering, over all runs that contributed */
     uint64_t rays;
-    uint64_t refused; /* samples that were not finite; they count as black */
+    uint64_t refused; /* samples, or contributions to them, that were not finite; they count as black */
 } mu_film;
 
 /* Black, without samples. A film that this machine's memory cannot hold is refused. */

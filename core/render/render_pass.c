@@ -64,7 +64,7 @@ static void work_tile(mu_pass *pass, uint64_t tile, void *scratch) {
             while (pixel->samples < pass->target) {
                 mu_radiance sample = {.rgb = {0}};
                 plan->sample(plan->context, plan->seed, x, y, pixel->samples, scratch, &sample);
-                refused += !mu_pixel_add(pixel, &sample);
+                refused += (uint64_t)!mu_pixel_add(pixel, &sample) + sample.refused;
                 rays += sample.rays;
                 samples += 1;
             }

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* render_options.c: the command line of `musurf render`, its help, and what it refuses. */
+#include "core/render/render_options.h"
+
+#include <errno.h>
+#include <math.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/render/render.h"
+
+enum { OUTPUT, SPP, TIME, NOISE, THREADS, SEED, SIZE, RESUME, PNG, EXPLAIN, PROGRESS, QUIET };
+
+static const mu_option option_list[] = {
+    {"o", "OUT.exr", "the image, written when it is complete and whole"},
+    {"spp", "N", "samples per pixel (default: the scene's)"},
+    {"time", "S", "stop before S seconds have passed; at least one sample per pixel is taken"},
+    {"noise", "E", "stop when the mean relative standard error of the pixels is E or less"},
+    {"threads", "N", "threads (default: one per processor); the image does not depend on it"},
+    {"seed", "S", "seed of the random numbers (default: the scene's)"},
+    {"size", "WxH", "pixels, instead of the scene's"},
+    {"resume", NULL, "go on from OUT.resume; without such a file start from nothing"},
+    {"png", "FILE", "an 8-bit sRGB preview as well"},
+    {"explain", NULL, "what the scene needs and what is left out, on stdout; without -o that is all"},
+    {"progress", "auto|json|none",
+     "auto: a bar if stderr is a terminal; json: a line of JSON twice a second"},
+    {"quiet", NULL, "nothing on stderr but errors"},
+    {NULL, NULL, NULL}};
+
+const mu_usage mu_render_usage = {
+    "render", "SCENE -o OUT.exr [OPTIONS]",
+    "Renders a scene file by path tracing into an OpenEXR image with albedo, normal, variance and sample\n"
+    "count of each pixel; the header holds the scene, this command, the seed and the camera.\n",
+    option_list,
+    "--time and --noise without --spp are not limited by the scene's samples. Whole passes are made, so "
+    "every\n"
+    "pixel of a finished image has the same number of samples.\n"
+    "\n"
+    "SIGINT, SIGTERM or SIGHUP end the render with exit code 130: OUT.partial.exr holds the image so far, "
+    "and\n"
+    "OUT.resume the exact sums, from which --resume goes on to the same image as without the interruption.\n"
+    "A second signal quits at once. Long renders save OUT.resume every minute. Both files are removed when\n"
+    "OUT.exr is written. Whatever happens, an OUT.exr that was there stays until it is replaced as a "
+    "whole.\n"};
+
+static _Bool read_number(const mu_options *given, double max, double *out) {
+    char *end;
+    errno = 0;
+    const double value = strtod(given->value, &end);
+    if (end == given->value || *end || errno == ERANGE || !(value > 0) || !(value <= max)) {
+        mu_refuse(given->usage, "--%s is \"%s\"; a number above 0 and at most %g is needed", given->name,
+                  given->value, max);
+        return 0;
+    }
+    *out = value;
+    return 1;
+}
+
+static _Bool read_size(const mu_options *given, uint32_t *width, uint32_t *height) {
+    const char *text = given->value;
+    unsigned long side[2] = {0, 0};
+    _Bool good = 1;
+    for (int i = 0; i < 2 && good; ++i) {
+        char *end;
+        good = *text >= '0' && *text <= '9'; /* strtoul would take signs and blanks */
+        side[i] = strtoul(text, &end, 10);
+        good = good && side[i] >= 1 && side[i] <= 65536 && *end == (i ? '\0' : 'x');
+        text = end + 1;
+    }
+    if (!good) {
+        mu_refuse(given->usage, "--size is \"%s\"; WxH is needed, both from 1 to 65536", given->value);
+        return 0;
+    }
+    *width = (uint32_t)side[0];
+    *height = (uint32_t)side[1];
+    return 1;
+}
+
+/* The processors that this process may use, which taskset and containers restrict. */
+static uint32_t processors(void) {
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set)) return 1;
+    const int count = CPU_COUNT(&set);
+    return count > 0 ? (uint32_t)count : 1;
+}
+
+static _Bool ends_in(const char *text, const char *tail) {
+    const size_t length = strlen(text), end = strlen(tail);
+    return length > end && !strcmp(text + length - end, tail) && text[length - end - 1] != '/';
+}
+
+static _Bool take(mu_render_options *options, int met, const mu_options *given) {
+    static const char *const kinds[] = {"auto", "json", "none", NULL};
+    uint64_t threads;
+    int kind;
+    switch (met) {
+    case OUTPUT:
+        options->output = given->value;
+        return 1;
+    case PNG:
+        options->png = given->value;
+        return 1;
+    case SPP:
+        return mu_options_unsigned(given, 1, MU_MOST_SAMPLES, &options->samples);
+    case TIME:
+        return read_number(given, 1e9, &options->seconds);
+    case NOISE:
+        return read_number(given, 1e6, &options->noise);
+    case SIZE:
+        return read_size(given, &options->width, &options->height);
+    case RESUME:
+        return options->resume = 1;
+    case EXPLAIN:
+        return options->explain = 1;
+    case QUIET:
+        return options->quiet = 1;
+    case SEED:
+        return options->seed_given = mu_options_unsigned(given, 0, UINT64_MAX, &options->seed);
+    case THREADS:
+        if (!mu_options_unsigned(given, 1, 1024, &threads)) return 0;
+        options->threads = (uint32_t)threads;
+        return 1;
+    case PROGRESS:
+        if (!mu_options_choice(given, kinds, &kind)) return 0;
+        options->progress = kind == 0 ? MU_PROGRESS_AUTO : kind == 1 ? MU_PROGRESS_JSON : MU_PROGRESS_NONE;
+        return 1;
+    case MU_OPTIONS_OPERAND:
+        if (options->scene) {
+            mu_refuse(given->usage, "one SCENE at a time, but \"%s\" is a second", given->value);
+            return 0;
+        }
+        options->scene = given->value;
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+_Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, int *exit) {
+    const mu_usage *usage = &mu_render_usage;
+    mu_options given = mu_options_begin(usage, argc, argv);
+    int met;
+    *options = (mu_render_options){.threads = processors()};
+    *exit = MU_EXIT_REFUSED;
+    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
+        if (met < 0 && met != MU_OPTIONS_OPERAND) {
+            *exit = mu_options_exit(met);
+            return 0;
+        }
+        if (!take(options, met, &given)) return 0;
+    }
+    if (!options->scene)
+        mu_refuse(usage, "which SCENE? See musurf render --help");
+    else if (!options->output && !options->explain)
+        mu_refuse(usage, "no output is named; -o OUT.exr is needed");
+    else if (options->output && !ends_in(options->output, ".exr"))
+        mu_refuse(usage, "-o is \"%s\"; it must end in .exr (a PNG preview is made by --png)",
+                  options->output);
+    else if (options->png && !options->output)
+        mu_refuse(usage, "--png needs -o OUT.exr as well");
+    else if (options->png && !strcmp(options->png, options->output))
+        mu_refuse(usage, "-o and --png are the same file");
+    else
+        *exit = MU_EXIT_OK;
+    return *exit == MU_EXIT_OK;
+}

@@ -132,7 +132,7 @@ void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_l
     *out = (mu_light_sample){.direction = {0, 0, 1}, .distance = INFINITY};
     if (!lights->choice) return;
     float unused;
-    const uint32_t index = mu_cdf_find(lights->choice, lights->count, u[2], &unused);
+    const uint32_t index = mu_cdf_find(lights->choice, 0, lights->count - 1, u[2], &unused);
     const mu_light *light = &lights->lights[index];
     const float chosen = chance(lights, index);
     switch (light->kind) {

@@ -25,10 +25,19 @@ typedef struct mu_sphere_row {
     float inverse_cell; /* 1 / solid angle of one of its cells, 1/sr */
 } mu_sphere_row;
 
+/* A cumulative distribution over cells: count + 1 rising bounds from 0 to 1, and where searches begin:
+ * guide[k] is the last cell that starts at or below k / buckets. Most searches end where they begin, or next
+ * to it. */
+typedef struct mu_distribution {
+    float *bounds;
+    uint32_t *guide; /* buckets + 1 */
+    uint32_t count, buckets;
+} mu_distribution;
+
 typedef struct mu_sphere_table {
-    uint32_t width, height; /* 0: nothing to draw */
-    float *marginal;        /* height + 1 */
-    float *conditional;     /* width + 1 for each row */
+    uint32_t width, height;  /* 0: nothing to draw */
+    mu_distribution down;    /* over rows */
+    mu_distribution *across; /* over the columns of each row */
     mu_sphere_row *rows;
 } mu_sphere_table;
 
@@ -51,14 +60,17 @@ float mu_sphere_table_pdf(const mu_sphere_table *table, float u, float v);
 /* [any] (u, v) in [0, 1] of a unit direction. */
 void mu_sphere_table_locate(mu_vec3 direction, float *u, float *v);
 
-/* The cell that holds u in [0, 1), given its count + 1 rising bounds from 0 to 1; *within gets the place in
- * it, in [0, 1). The cell found is never empty, for bounds[cell] <= u < bounds[cell + 1]. */
-static inline uint32_t mu_cdf_find(const float *bounds, uint32_t count, float u, float *within) {
-    uint32_t first = 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        first += bounds[first + half] <= u ? half : 0;
-        count -= half;
+/* The cell that holds u in [0, 1), given rising bounds from 0 to 1, between the cells `first` and `last`;
+ * *within gets the place in it, in [0, 1). The cell found is never empty, for bounds[cell] <= u < bounds[cell
+ * + 1]. */
+static inline uint32_t mu_cdf_find(const float *bounds, uint32_t first, uint32_t last, float u,
+                                   float *within) {
+    while (first < last) {
+        const uint32_t middle = last - (last - first) / 2;
+        if (bounds[middle] <= u)
+            first = middle;
+        else
+            last = middle - 1;
     }
     const float place = (u - bounds[first]) / (bounds[first + 1] - bounds[first]);
     *within = place < 0x1.fffffep-1f ? place : 0x1.fffffep-1f;

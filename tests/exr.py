@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Reads single-part scanline OpenEXR files (no compression, ZIPS, ZIP) with numpy and zlib alone.
+
+Written from the file format's description, so that what the renderer writes through OpenEXR's library is read by
+something else. read(file) returns (header, channels): attributes by name, float32 or uint32 arrays by channel.
+"""
+import pathlib
+import struct
+import zlib
+
+import numpy
+
+KINDS = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
+LINES = {0: 1, 2: 1, 3: 16}
+PLAIN = {"int": "<i", "float": "<f", "double": "<d", "v2f": "<2f", "v3f": "<3f", "box2i": "<4i",
+         "chromaticities": "<8f", "compression": "<B", "lineOrder": "<B"}
+
+
+def text(data, at):
+    end = data.index(b"\0", at)
+    return data[at:end].decode(), end + 1
+
+
+def channel_list(value):
+    channels, at = [], 0
+    while value[at]:
+        name, at = text(value, at)
+        kind, _, x, y = struct.unpack_from("<iIii", value, at)
+        assert x == y == 1, "subsampled channels are not supported"
+        channels.append((name, KINDS[kind]))
+        at += 16
+    return channels
+
+
+def header_of(data):
+    magic, version = struct.unpack_from("<II", data)
+    assert magic == 20000630 and version == 2, "no single-part scanline EXR file"
+    header, at = {}, 8
+    while data[at]:
+        name, at = text(data, at)
+        kind, at = text(data, at)
+        size, = struct.unpack_from("<i", data, at)
+        value, at = data[at + 4:at + 4 + size], at + 4 + size
+        if kind in PLAIN:
+            value = struct.unpack(PLAIN[kind], value)
+            value = value[0] if len(value) == 1 else value
+        elif kind == "string":
+            value = value.decode()
+        elif kind == "chlist":
+            value = channel_list(value)
+        header[name] = value
+    return header, at + 1
+
+
+def unzip(block, size):
+    """ZIP: deflate, then differences of bytes, then the two halves interleaved. Blocks that do not shrink are plain."""
+    if len(block) == size:
+        return block
+    parts = numpy.frombuffer(zlib.decompress(block), numpy.uint8).astype(numpy.int64)
+    parts[1:] -= 128
+    parts = (numpy.cumsum(parts) & 255).astype(numpy.uint8)
+    half = (size + 1) // 2
+    whole = numpy.empty(size, numpy.uint8)
+    whole[0::2], whole[1::2] = parts[:half], parts[half:]
+    return whole.tobytes()
+
+
+def read(file):
+    data = pathlib.Path(file).read_bytes()
+    header, at = header_of(data)
+    x0, y0, x1, y1 = header["dataWindow"]
+    assert header["displayWindow"] == header["dataWindow"]
+    width, height, lines = x1 - x0 + 1, y1 - y0 + 1, LINES[header["compression"]]
+    planes = {name: numpy.empty((height, width), kind) for name, kind in header["channels"]}
+    bytes_per_line = sum(kind.itemsize for _, kind in header["channels"]) * width
+    count = (height + lines - 1) // lines
+    for offset in struct.unpack_from(f"<{count}Q", data, at):
+        y, size = struct.unpack_from("<ii", data, offset)
+        rows = min(lines, y1 + 1 - y)
+        block = data[offset + 8:offset + 8 + size]
+        assert len(block) == size, "truncated"
+        block = unzip(block, rows * bytes_per_line) if header["compression"] else block
+        at_block = 0
+        for row in range(y - y0, y - y0 + rows):
+            for name, kind in header["channels"]:
+                planes[name][row] = numpy.frombuffer(block, kind, width, at_block)
+                at_block += kind.itemsize * width
+    return header, {name: plane if plane.dtype.kind == "u" else plane.astype(numpy.float32)
+                    for name, plane in planes.items()}

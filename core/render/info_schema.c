@@ -69,6 +69,7 @@ static json_t *value_schema(const musurf_material_type *type, const char *name) 
                 json_object_set_new(members, "oneOf", one);
             else
                 json_decref(one);
+            json_object_set_new(members, "minProperties", json_integer(1));
         }
         schema = json_pack("{s:[o, o]}", "anyOf", plain_schema(p), members);
     } else {

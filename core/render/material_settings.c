@@ -179,6 +179,8 @@ static _Bool read_members(mu_settings *s, const mu_place *place, const char *pre
 static _Bool read_choice_object(mu_settings *s, const musurf_param *p, const mu_place *place,
                                 mu_error *error) {
     if (!check_members(s->type, p->name, p->choices, place, error)) return 0;
+    if (json_object_size(place->value) == 0)
+        return mu_place_fail(place, error, "is an empty object; a choice, or what belongs to one, is needed");
     const char *chosen = NULL, *key;
     json_t *value;
     json_object_foreach(place->value, key, value) {

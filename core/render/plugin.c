@@ -116,7 +116,11 @@ static opened *open_one(const char *vendor, mu_error *error) {
 
     o->handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     if (!o->handle) {
-        mu_fail(error, "%s: cannot be opened as a plugin: %s", file, dlerror());
+        const char *why = dlerror(); /* mostly begins with the file's name */
+        const size_t length = strlen(file);
+        if (strncmp(why, file, length) == 0 && why[length] == ':')
+            why += length + 1 + strspn(why + length + 1, " ");
+        mu_fail(error, "%s: cannot be opened as a plugin: %s", file, why);
     } else {
         /* POSIX guarantees that the object pointer of dlsym holds a function; ISO C has no cast for it. */
         void *const symbol = dlsym(o->handle, MUSURF_ENTRY_NAME);

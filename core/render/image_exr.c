@@ -112,6 +112,7 @@ static exr_result_t put_head(exr_context_t exr, const mu_film *film, const mu_fi
     code = code ? code : put_text(exr, "seed", number);
     code = code ? code : exr_attr_set_int(exr, 0, "samples", (int32_t)info->samples);
     code = code ? code : exr_attr_set_double(exr, 0, "seconds", info->seconds);
+    code = code ? code : exr_attr_set_double(exr, 0, "noise", mu_film_noise(film));
     code = code ? code : exr_attr_set_chromaticities(exr, 0, "chromaticities", &rec709);
     return code ? code : put_camera(exr, &info->camera);
 }

@@ -106,5 +106,5 @@ def controls(setup, surface, original, steps, entry):
             names.append((name, wrong))
             label = f"{name} lit from {wrong}".replace("^-1", " inverse")
             jobs.append(lambda label=label, m=m, lights=lights: surface.seen(setup, label, m, lights, 1, steps, entry))
-    return [{"map": name, "lit_from": wrong, "different": masking.disagreement(bits, original)[0],
+    return [{"map": name, "lit_from": wrong, "bits": bits, "different": masking.disagreement(bits, original)[0],
              "total": original[0].size} for (name, wrong), bits in zip(names, parallel(setup, jobs))]

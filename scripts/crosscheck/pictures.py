@@ -26,42 +26,44 @@ def raster(values):
     return values.reshape(len(values), len(values), 2).transpose(1, 0, 2).reshape(len(values), -1)
 
 
-def surfaces(setup, measured, path):
-    """Each surface from above in its own space, lit from M v of the second view: cos times visibility."""
+def surfaces(setup, measured, path, cells=96):
+    """A corner of each surface from above in its own space, lit from M v of the second view: cos times visibility."""
     view = min(1, len(setup.views) - 1)
     figure, axes = plt.subplots(1, len(setup.maps), figsize=(4 * len(setup.maps), 4.2), squeeze=False)
     for axis, (name, m) in zip(axes[0], setup.maps.items()):
         light = maps.carried(m, setup.views[view])
         slopes = mesh.baked_slopes(measured["first"], m)
         cosine = masking.facing(slopes, light) / np.sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2)
-        shade = raster(cosine * masking.centre(measured["bits"][name])[view, ..., 0])
-        n = setup.size
-        axis.imshow(shade, cmap="gray", origin="lower", extent=(0, n, 0, n), vmin=0, vmax=max(shade.max(), 1e-9),
+        shade = raster((cosine * masking.centre(measured["bits"][name])[view, ..., 0])[:cells, :cells])
+        axis.imshow(shade, cmap="gray", origin="lower", extent=(0, cells, 0, cells), vmin=0, vmax=max(shade.max(), 1e-9),
                     transform=Affine2D(np.array([[*m[0], 0], [*m[1], 0], [0, 0, 1]])) + axis.transData)
-        corners = np.array([[0, 0], [n, 0], [n, n], [0, n]]) @ m.T
-        reach = max(np.ptp(corners, 0)) / 2 * 1.05
-        middle = corners.mean(0)
+        corners = np.array([[0, 0], [cells, 0], [cells, cells], [0, cells]]) @ m.T
+        reach, middle = max(np.ptp(corners, 0)) / 2 * 1.05, (corners.min(0) + corners.max(0)) / 2
         axis.set(xlim=(middle[0] - reach, middle[0] + reach), ylim=(middle[1] - reach, middle[1] + reach), aspect="equal",
-                 title=name, facecolor="#8aa")
+                 title=name, facecolor="#8aa", xticks=[], yticks=[])
     return save(figure, path)
 
 
 def masks(setup, measured, path):
-    """What each view sees of the original and of the images, in texture space, and the bits that differ."""
-    names = ["original", *setup.maps]
-    figure, axes = plt.subplots(2, len(names), figsize=(3.2 * len(names), 6.6))
-    first = masking.centre(measured["bits"]["original"])[..., 0]
-    for column, name in enumerate(names):
-        bits = masking.centre(measured["bits"][name])[..., 0]
+    """What the views see of the original and its images, in the original's coordinates, and where bits differ.
+
+    The last column is a negative control, lit from v instead of M v.
+    """
+    shown = {name: masking.centre(bits)[..., 0] for name, bits in measured["bits"].items()}
+    for control in measured["controls"][:1]:
+        shown[f"{control['map']}, lit from {control['lit_from']}"] = control["bits"][..., 0]
+    first, n = shown["original"], setup.size
+    figure, axes = plt.subplots(2, len(shown), figsize=(3.2 * len(shown), 6.8))
+    for (above, below), (name, bits) in zip(axes.T, shown.items()):
         colours = np.zeros((3, *raster(bits[0]).shape))
         colours[: len(bits)] = [raster(b) for b in bits]
-        axes[0, column].imshow(colours.transpose(1, 2, 0), origin="lower", aspect=2)
-        axes[0, column].set_title(name)
-        wrong = (bits != first).any(0)
-        axes[1, column].imshow(raster(wrong), cmap="gray", origin="lower", aspect=2, vmin=0, vmax=1)
-        axes[1, column].set_title(f"differs: {int((bits != first).sum())} of {bits.size} bits")
-    for axis in axes.ravel():
-        axis.set(xticks=[], yticks=[])
+        above.imshow(colours.transpose(1, 2, 0), origin="lower", extent=(0, n, 0, n))
+        above.set_title(name)
+        i, j, upper = np.nonzero((bits != first).any(0))
+        below.plot(i + 0.25 + 0.5 * upper, j + 0.5, "r.", markersize=4 if len(i) < 1000 else 0.5)
+        below.set(title=f"{int((bits != first).sum())} of {bits.size} bits differ", xlim=(0, n), ylim=(0, n), aspect="equal")
+        for axis in (above, below):
+            axis.set(xticks=[], yticks=[])
     return save(figure, path)
 
 

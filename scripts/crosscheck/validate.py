@@ -12,9 +12,10 @@ import time
 
 from . import experiment, options as command_line, pictures, povray, predict, steps as progress, tables, verdicts
 
-CAPTIONS = {"surfaces.png": "The surface and its images from above, each in its own space, lit from Mv: light that goes "
+CAPTIONS = {"surfaces.png": "A corner of the surface and of its images from above, each in its own space, lit from Mv: light that goes "
                             "with M leaves the same facets dark.",
-            "masking.png": "What the three views see (red, green, blue), in the coordinates of the original; below, what differs.",
+            "masking.png": "What the three views see (red, green, blue), in the coordinates of the original; below, "
+                           "the facets whose bits differ. The last column is lit from v instead of Mv: there it must differ.",
             "g1.png": "G1: POV-Ray against the core.",
             "normals.png": "Normals of the transformed facets against the core's D under M (Eq. 22)."}
 

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Puts the sections together into one page that works offline: style and pictures inside, nothing fetched."""
+import argparse
+import datetime
+import html
+import json
+import os
+import pathlib
+import sys
+
+from . import exr_header, plates, versions
+
+
+def page(sections, subtitle):
+    style = (pathlib.Path(__file__).parent / "style.css").read_text()
+    return (f'<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width">\n'
+            f"<title>musurf report</title>\n<style>\n{style}</style>\n<h1>musurf report</h1>\n"
+            f'<p class="faint">{html.escape(subtitle)}</p>\n' + "\n".join(sections) + "\n</html>\n")
+
+
+def write(path, text):
+    """Beside, then renamed: an older report stays whole until the new one is."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".new")
+    fresh.write_text(text, encoding="utf-8")
+    fresh.replace(path)
+
+
+def make(options, build):
+    sections, links, validation = [], [], {}
+    if options.plates:
+        sections.append(plates.section(plates.load(pathlib.Path(options.plates))))
+        links.append('<a href="#plates">Plates</a>')
+    if options.validate:
+        folder = pathlib.Path(options.validate)
+        validation = json.loads((folder / "validate.json").read_text())
+        sections.append(f'<section id="validate">{(folder / "fragment.html").read_text()}</section>')
+        links.append('<a href="#validate">Cross-check</a>')
+    sections.append(versions.section(versions.gather(build, validation)))
+    links.append('<a href="#versions">Versions</a>')
+    verdict = f" Cross-check: {validation['verdict']}." if validation else ""
+    subtitle = f"Made {datetime.datetime.now().astimezone():%Y-%m-%d %H:%M %Z}.{verdict}"
+    return page([f"<nav>{''.join(links)}</nav>", *sections], subtitle)
+
+
+def main(arguments, build):
+    parser = argparse.ArgumentParser("scripts/report", description="Writes one self-contained HTML page and prints its path. "
+                                     "Exit 0; 1 if an input is missing or broken; 2 on wrong usage.")
+    parser.add_argument("--plates", metavar="DIR", help="rendered plates: PNG files, beside them EXR files and plates.json")
+    parser.add_argument("--validate", metavar="DIR", help="output folder of scripts/validate")
+    parser.add_argument("-o", metavar="FILE", dest="output", default=os.path.join(str(build), "report", "index.html"))
+    options = parser.parse_args(arguments)
+    try:
+        text = make(options, build)
+        write(pathlib.Path(options.output), text)
+    except OSError as error:
+        print(f"report: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 1
+    except (ValueError, KeyError, TypeError, exr_header.HeaderError) as error:
+        print(f"report: {error if isinstance(error, exr_header.HeaderError) else f'an input is not what it should be: {error!r}'}",
+              file=sys.stderr)
+        return 1
+    print(options.output)
+    return 0

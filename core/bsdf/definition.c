@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* definition.c: what a surface may be, and what to say when it may not. */
+#include "core/bsdf/real.h"
+#include <stdio.h>
+
+#if MU_REAL_BITS == 53
+
+mu_definition mu_definition_default(void) {
+    return (mu_definition){
+        .ndf = MU_GGX,
+        .alpha = 0.3,
+        .gamma = 2,
+        .transform = {1, 0, 0, 1},
+        .schlick = {1, 1, 1},
+        .dielectric = 1.5,
+        .n = {0.06, 0.06, 0.05},
+        .k = {4.152, 3.586, 2.869},
+    };
+}
+
+static int complain(mu_complaint *why, const char *field, double x, const char *right) {
+    why->field = field;
+    snprintf(why->text, sizeof why->text, "%.9g is out of range: %s", x, right);
+    return 0;
+}
+
+static int check_fresnel(const mu_definition *d, mu_complaint *why) {
+    for (int i = 0; i < 3; i++) {
+        if (d->fresnel == MU_FRESNEL_SCHLICK && !(d->schlick[i] >= 0 && d->schlick[i] <= 1))
+            return complain(why, "schlick", d->schlick[i], "a reflectance lies in [0, 1]");
+        if (d->fresnel != MU_FRESNEL_CONDUCTOR) continue;
+        if (!(d->n[i] > 0 && d->n[i] <= 1000))
+            return complain(why, "n", d->n[i], "an index of refraction lies in (0, 1000]");
+        if (!(d->k[i] >= 0 && d->k[i] <= 1000))
+            return complain(why, "k", d->k[i], "an extinction lies in [0, 1000]");
+    }
+    if (d->fresnel == MU_FRESNEL_DIELECTRIC && !(d->dielectric >= 1e-3 && d->dielectric <= 1e3))
+        return complain(why, "dielectric", d->dielectric, "n_below/n_above lies in [0.001, 1000]");
+    return 1;
+}
+
+int mu_definition_check(const mu_definition *d, mu_complaint *why) {
+    if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
+        return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
+    if (d->ndf == MU_GTR && d->alpha > 1)
+        return complain(why, "alpha", d->alpha, "gtr is defined for alpha in [0, 1]");
+    if (d->ndf == MU_GTR && !(d->gamma >= 0 && d->gamma <= DBL_MAX))
+        return complain(why, "gamma", d->gamma, "gtr is defined for finite gamma of at least 0");
+    if (mu_transform_determinant(d->transform) == 0) {
+        const double *m = d->transform;
+        why->field = "transform";
+        snprintf(why->text, sizeof why->text,
+                 "[[%.9g, %.9g], [%.9g, %.9g]] is singular or not finite: M must be invertible", m[0], m[1],
+                 m[2], m[3]);
+        return 0;
+    }
+    return check_fresnel(d, why);
+}
+
+#endif

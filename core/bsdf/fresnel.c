@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * fresnel.c: reflectance of a flat facet, unpolarised, at the cosine between a direction and the micronormal.
+ * Exact for dielectric and conductor, written as sums of squares: no difference of nearly equal numbers
+ * anywhere.
+ */
+#include "core/bsdf/distribution.h"
+
+/* Schlick 1994 */
+static void schlick(const fresnel *f, real c, real out[3]) {
+    const real x = 1 - c, x2 = x * x, x5 = x2 * x2 * x;
+    for (int k = 0; k < 3; k++) out[k] = f->a[k] + (1 - f->a[k]) * x5;
+}
+
+/* n_below / n_above = eta, also below 1, where F = 1 beyond the critical angle. */
+static real dielectric(real eta, real c) {
+    const real g2 = (eta - 1) * (eta + 1) + c * c;
+    if (!(g2 > 0)) return eta == 1 ? 0 : 1;
+    const real g = sqrt(g2), sum = g + c, s = (eta - 1) * (eta + 1) / square(sum); /* (g - c) / (g + c) */
+    const real p = (c * sum - 1) / (c * (g - c) + 1);
+    return s * s * (1 + p * p) / 2;
+}
+
+/* n + ik: |.|² of both amplitudes; a + ib = sqrt((n + ik)² - sin²) */
+static real conductor(real n, real k, real c) {
+    const real s2 = larger((1 - c) * (1 + c), 0), t = (n - k) * (n + k) - s2, nk2 = 2 * n * k;
+    const real length = hypot(t, nk2), big = sqrt((length + fabs(t)) / 2),
+               small = big > 0 ? nk2 / (2 * big) : 0;
+    const real a = t > 0 ? big : small, b = t > 0 ? small : big;
+    const real rs = (square(a - c) + b * b) / (square(a + c) + b * b);
+    const real rp = (square(a * c - s2) + square(b * c)) / (square(a * c + s2) + square(b * c));
+    return smaller(rs * (1 + rp) / 2, 1);
+}
+
+void MU(fresnel_eval)(const fresnel *f, real cosine, real out[3]) {
+    switch (f->kind) {
+    case MU_FRESNEL_SCHLICK:
+        schlick(f, cosine, out);
+        return;
+    case MU_FRESNEL_DIELECTRIC:
+        out[0] = out[1] = out[2] = dielectric(f->a[0], cosine);
+        return;
+    case MU_FRESNEL_CONDUCTOR:
+        for (int k = 0; k < 3; k++) out[k] = conductor(f->a[k], f->b[k], cosine);
+        return;
+    case MU_FRESNEL_NONE:
+        break;
+    }
+    out[0] = out[1] = out[2] = 1;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * ggx.c: GGX (Trowbridge & Reitz 1975, Walter et al. 2007), shape-invariant: slopes in units of alpha, no
+ * parameter. P22 = 1 / (pi (1 + X)²) with X the squared slope; Lambda = (sqrt(1 + X) - 1) / 2.
+ */
+#include "core/bsdf/cap.h"
+#include "core/bsdf/distribution.h"
+
+static inline real density(const base *b, real r2, real z2, real n2) {
+    (void)b;
+    const real t = n2 / (r2 + z2);
+    return R(INV_PI) * t * t;
+}
+
+static inline real z_lambda(const base *b, real r2, real z2, real z) {
+    (void)b;
+    return r2 / larger(2 * (sqrt(z2 + r2) + z), REAL_MIN); /* (sqrt - z) / 2 without its cancellation */
+}
+
+static inline void sample_slope(const base *b, const real u[3], real n[3]) {
+    (void)b;
+    slope_normal(sqrt(u[0]), sqrt(1 - u[0]), u[1], n);
+}
+
+static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
+    (void)b;
+    cap_visible(w, 1, u[0], u[1], n);
+}
+
+static size_t table_bytes(double alpha, double gamma) {
+    (void)alpha, (void)gamma;
+    return 0;
+}
+
+static double prepare(base *b, double alpha, double gamma, void *table) {
+    (void)b, (void)gamma, (void)table;
+    return alpha;
+}
+
+#define DISTRIBUTION ggx
+#include "core/bsdf/transformed.h"

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * linear_map.c: preparing M, in double whatever the precision of shading: it is done once per hit at most.
+ *
+ * With M = 2^e M' (entries of M' at most 1), s the slope unit and delta = sqrt(|det M|) / s:
+ *   normals     M^T m / s times delta^(-1/2), so that D_M(m) = D(u): see linear_map.h;
+ *   directions  s M^-1 v = adj(M') v / (delta |det M'|^(1/2)) times sign(det), and times view_z, a power of
+ * two that brings the entries near 1. An explicit inverse is never formed.
+ */
+#include "core/bsdf/linear_map.h"
+
+/* Beyond these delta, D at its peak (or beside it) is no number of this precision any more: it saturates. */
+#if MU_REAL_BITS == 24
+#define DELTA_MAX 0x1p100
+#define VIEW_MAX  0x1p60
+#else
+#define DELTA_MAX 0x1p500
+#define VIEW_MAX  0x1p400
+#endif
+
+/* a d - b c to within 1.5 units in the last place, however much cancels (Kahan). */
+static double product_difference(double a, double d, double b, double c) {
+    const double bc = b * c;
+    return fma(a, d, -bc) + fma(-b, c, bc);
+}
+
+static double clamp(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+/* M' and its signed determinant; 0 if M is not finite, or singular. */
+static double reduce(const double m[4], double reduced[4], int *exponent) {
+    const double largest = fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3])));
+    if (!(largest > 0 && largest <= DBL_MAX) || isnan(m[0] + m[1] + m[2] + m[3])) return 0;
+    (void)frexp(largest, exponent);
+    for (int i = 0; i < 4; i++) reduced[i] = ldexp(m[i], -*exponent);
+    const double det = product_difference(reduced[0], reduced[3], reduced[1], reduced[2]);
+    return fabs(det) < 1e-30 ? 0 : det;
+}
+
+#if MU_REAL_BITS == 53
+double mu_transform_determinant(const double transform[4]) {
+    double reduced[4];
+    int exponent = 0;
+    const double det = reduce(transform, reduced, &exponent);
+    return ldexp(fabs(det), 2 * exponent);
+}
+#endif
+
+int MU(map_make)(map *out, const double m[4], double unit) {
+    double r[4];
+    int exponent = 0;
+    const double det = reduce(m, r, &exponent);
+    if (det == 0) return 0;
+    const double root = sqrt(fabs(det));
+    const double delta = clamp(ldexp(root / unit, exponent), 1 / DELTA_MAX, DELTA_MAX);
+
+    const double normal = sqrt(delta) / root;
+    const double dropped = MUTANT(1, sqrt(delta * unit), 1); /* u too long by |det M|^(1/4) */
+    const double b = MUTANT(7, r[1], r[2]), c = MUTANT(7, r[2], r[1]);
+    out->normal[0] = R(r[0] * normal * dropped); /* M^T: rows [a b], [c d] */
+    out->normal[1] = R(b * normal * dropped);
+    out->normal[2] = R(c * normal * dropped);
+    out->normal[3] = R(r[3] * normal * dropped);
+    out->normal_z = R(dropped / sqrt(delta));
+
+    int binary;
+    (void)frexp(clamp(delta * root, 1 / VIEW_MAX, VIEW_MAX), &binary);
+    const double scale = ldexp(1, binary);
+    const double view = scale / (delta * root) * (det < 0 ? -1 : 1);
+    out->view[0] = R(MUTANT(2, r[0], r[3]) * view); /* adj M: rows [d -c], [-b a] */
+    out->view[1] = R(MUTANT(2, r[1], -r[1]) * view);
+    out->view[2] = R(MUTANT(2, r[2], -r[2]) * view);
+    out->view[3] = R(MUTANT(2, r[3], r[0]) * view);
+    out->view_z = R(scale);
+    return 1;
+}
+
+int MU(map_widen)(map *m, double alpha) {
+    /* V = s M^-1 = rotation diag(large, small) rotation, by sums and differences of its entries; small < 0
+     * for a mirror */
+    const double z = (double)m->view_z;
+    const double a = (double)m->view[0] / z, b = (double)m->view[1] / z, c = (double)m->view[2] / z,
+                 d = (double)m->view[3] / z;
+    const double e = (a + d) / 2, f = (a - d) / 2, g = (c + b) / 2, h = (c - b) / 2;
+    const double q = hypot(e, h), r = hypot(f, g), large = q + r, small = q - r;
+    if (fabs(small) >= alpha) return 0;
+    const double sum = atan2(h, e), difference = atan2(g, f);
+    const double wide = fmax(large, alpha), narrow = copysign(alpha, small);
+    const double q2 = (wide + narrow) / 2, r2 = (wide - narrow) / 2;
+    const double e2 = q2 * cos(sum), h2 = q2 * sin(sum), f2 = r2 * cos(difference), g2 = r2 * sin(difference);
+    const double det = wide * narrow;
+    const double inverse[4] = {(e2 - f2) / det, -(g2 - h2) / det, -(g2 + h2) / det, (e2 + f2) / det};
+    return MU(map_make)(m, inverse, 1);
+}

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * musurf.h: reflection by microfacets whose microsurface is linearly transformed.
+ *
+ *     mu_definition d = mu_definition_default();          // GGX, alpha 0.3, identity, F = 1
+ *     d.ndf = MU_GTR; d.gamma = 1.7;
+ *     d.transform[0] = 5;                                 // stretched 5x along x
+ *     mu_complaint why;
+ *     if (!mu_definition_check(&d, &why)) ...             // why.text says what would be right
+ *
+ *     size_t bytes = mu_surface_bytes_f(&d);              // your memory: the library allocates nothing
+ *     mu_surface_f *s = mu_surface_make_f(&d, memory);
+ *     mu_closure_f c;
+ *     if (mu_bind_f(s, wo, NULL, &c)) {                   // once per hit
+ *         mu_eval_f(&c, wi, &value);
+ *         mu_sample_wi_f(&c, u, &sample);
+ *     }
+ *
+ * Every function exists twice, from one source: ..._f computes in float, ..._d in double.
+ *
+ * Frame: right-handed, +z the macrosurface normal. Directions are unit vectors pointing away from the
+ * surface: wo to the viewer, wi to the light, wm the micronormal. Matrices are two rows of a 2x2 map M of
+ * tangent-plane positions (Eq. 9: rows [a c], [b d]). Values and densities are per steradian; nothing here
+ * includes the cosine of wi unless it says so. Equation numbers are those of Atanasov et al., Microsurface
+ * Transformations (2022).
+ *
+ * Threads: surfaces are immutable once made; everything may be called from any thread. No global state.
+ */
+#ifndef MUSURF_H
+#define MUSURF_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum mu_ndf { MU_GGX, MU_BECKMANN, MU_GTR, MU_NDF_COUNT } mu_ndf;
+typedef enum mu_sampler { MU_SAMPLE_VISIBLE, MU_SAMPLE_NDF } mu_sampler;
+typedef enum mu_fresnel_kind {
+    MU_FRESNEL_NONE,
+    MU_FRESNEL_SCHLICK,
+    MU_FRESNEL_DIELECTRIC,
+    MU_FRESNEL_CONDUCTOR
+} mu_fresnel_kind;
+
+/* What a surface is. Doubles whatever the precision of shading. */
+typedef struct mu_definition {
+    mu_ndf ndf;
+    double alpha;        /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror */
+    double gamma;        /* the tail of GTR: >= 0; ignored by the others */
+    double transform[4]; /* M: the two rows; any finite, non-singular map, mirrors too */
+    mu_sampler sampler;
+    mu_fresnel_kind fresnel;
+    double schlick[3]; /* reflectance at normal incidence */
+    double dielectric; /* n_below / n_above */
+    double n[3], k[3]; /* conductor: real index and extinction, relative to the medium above */
+} mu_definition;
+
+mu_definition mu_definition_default(void);
+
+/* What is wrong with a definition. */
+typedef struct mu_complaint {
+    const char *field; /* member of mu_definition */
+    char text[160];    /* one line: the value, and what would be right */
+} mu_complaint;
+
+/* 1 if the definition is good; otherwise 0, and why. */
+int mu_definition_check(const mu_definition *definition, mu_complaint *why);
+/* |det M| by a fused product difference; 0 also for a map so near to singular (|det| < 1e-30 max²) that no
+ * direction survives it, and for one that is not finite. */
+double mu_transform_determinant(const double transform[4]);
+
+/* n and k of a metal at three wavelengths, by chemical symbol; 0 if it is not known. The names,
+ * NULL-terminated. */
+int mu_metal(const char *symbol, double n[3], double k[3]);
+extern const char *const mu_metal_names[];
+
+#define MU_REAL       float
+#define MU_SUFFIX(id) id##_f
+#include "musurf_real.h"
+#undef MU_REAL
+#undef MU_SUFFIX
+#define MU_REAL       double
+#define MU_SUFFIX(id) id##_d
+#include "musurf_real.h"
+#undef MU_REAL
+#undef MU_SUFFIX
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* musurf_real.h: the part of musurf.h that exists once per precision. Included by it alone, twice. */
+
+/* A linear map, prepared (linear_map.c). With s the common slope unit that a distribution asked for:
+ *   normals     u = (normal m_xy, normal_z m_z)   is M^T m / s up to a scale chosen so that D_M(m) = D(u);
+ *   directions  w = (view v_xy, view_z v_z)       is M^-1 v scaled by view_z. */
+typedef struct MU_SUFFIX(mu_map) {
+    MU_REAL normal[4], normal_z;
+    MU_REAL view[4], view_z;
+} MU_SUFFIX(mu_map);
+
+typedef struct MU_SUFFIX(mu_kernel) MU_SUFFIX(mu_kernel);
+typedef struct MU_SUFFIX(mu_surface) MU_SUFFIX(mu_surface);
+
+/* A surface seen from wo. Plain bytes: copy and drop it at will while its surface lives. */
+typedef struct MU_SUFFIX(mu_closure) {
+    const MU_SUFFIX(mu_surface) * surface;
+    const MU_SUFFIX(mu_kernel) * kernel; /* NULL: a mirror */
+    MU_SUFFIX(mu_map) map;
+    MU_REAL wo[3];
+    MU_REAL sigma; /* view_z times the projected area sigma_M(wo) */
+    MU_REAL alpha;
+} MU_SUFFIX(mu_closure);
+
+typedef struct MU_SUFFIX(mu_value) {
+    MU_REAL f[3]; /* BRDF with F, without the cosine */
+    MU_REAL pdf;  /* of sampling wi given wo */
+    MU_REAL pdf_reverse;
+} MU_SUFFIX(mu_value);
+
+typedef struct MU_SUFFIX(mu_sample) {
+    MU_REAL wi[3], wm[3];
+    MU_REAL f[3];
+    MU_REAL weight[3]; /* f cos(wi) / pdf = F G2 / G1, analytic */
+    MU_REAL pdf, pdf_reverse;
+    int rejected; /* wi fell below the horizon: all else but wm is 0 */
+    int delta;    /* a mirror: f is 0 and pdf is 1, its discrete probability */
+} MU_SUFFIX(mu_sample);
+
+/* Quantities of one direction, of a micronormal, of a pair. */
+typedef struct MU_SUFFIX(mu_masking) {
+    MU_REAL Lambda, sigma;
+} MU_SUFFIX(mu_masking);
+typedef struct MU_SUFFIX(mu_normal_values) {
+    MU_REAL D, G1, Dv;
+} MU_SUFFIX(mu_normal_values);
+typedef struct MU_SUFFIX(mu_pair_values) {
+    MU_REAL F[3], G2;
+} MU_SUFFIX(mu_pair_values);
+
+/* Memory for a surface of a checked definition (aligned to 16), and the surface in it. The memory must not
+ * move. */
+size_t MU_SUFFIX(mu_surface_bytes)(const mu_definition *definition);
+MU_SUFFIX(mu_surface) * MU_SUFFIX(mu_surface_make)(const mu_definition *definition, void *memory);
+size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
+/* What the definition came down to: "ggx", "gtr table", "mirror", ... */
+const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);
+
+/* Binds wo (and, unless NULL, an M of this point in place of the definition's). 0: black from here (wo on or
+ * below the horizon, M singular or not finite): eval and sample must not be called; mu_view and mu_normal
+ * may, if M is good. */
+int MU_SUFFIX(mu_bind)(const MU_SUFFIX(mu_surface) * surface, const MU_REAL wo[3], const MU_REAL transform[4],
+                       MU_SUFFIX(mu_closure) * closure);
+/* Raises the slope roughness in every direction to at least alpha; a narrower lobe becomes GGX. */
+void MU_SUFFIX(mu_blur)(MU_SUFFIX(mu_closure) * closure, MU_REAL alpha);
+
+/* Zero where wi is below the horizon, and for a mirror. Never negative, never NaN; saturates at the largest
+ * number. */
+void MU_SUFFIX(mu_eval)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wi[3],
+                        MU_SUFFIX(mu_value) * out);
+/* u: three uniforms in [0,1). The first two move the normal, the third chooses among alternatives. */
+void MU_SUFFIX(mu_sample_wi)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL u[3],
+                             MU_SUFFIX(mu_sample) * out);
+/* The same with a sampler other than the definition's. */
+void MU_SUFFIX(mu_sample_with)(const MU_SUFFIX(mu_closure) * closure, mu_sampler sampler, const MU_REAL u[3],
+                               MU_SUFFIX(mu_sample) * out);
+
+MU_SUFFIX(mu_masking) MU_SUFFIX(mu_view)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL w[3]);
+MU_SUFFIX(mu_normal_values) MU_SUFFIX(mu_normal)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wm[3]);
+MU_SUFFIX(mu_pair_values) MU_SUFFIX(mu_pair)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wi[3]);

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * random.h: more uniforms than the caller gave, for rejection loops.
+ *
+ * Counter-based: the n-th number is a hash of n and of the bits of the caller's three uniforms, so a sample
+ * is a pure function of u: no state, the same bits on every thread. The hash (SplitMix64's finaliser, Steele
+ * et al. 2014) is a bijection of 64 bits whose outputs for neighbouring inputs are unrelated; over any set of
+ * u that matters, its numbers are uniform and independent of u itself. Float uniforms carry 24 bits each, 72
+ * together: enough that two samples of one image practically never share a sequence, and where they do they
+ * differ in u no more than two equal draws would.
+ */
+#ifndef MU_RANDOM_H
+#define MU_RANDOM_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "core/bsdf/real.h"
+
+typedef struct random {
+    uint64_t state;
+} random_stream;
+
+static inline uint64_t random_mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+static inline random_stream random_start(const real u[3]) {
+    uint64_t state = 0;
+    for (int i = 0; i < 3; i++) {
+        uint64_t bits = 0;
+        memcpy(&bits, &u[i], sizeof u[i]);
+        state = random_mix(state + bits + 0x9e3779b97f4a7c15u);
+    }
+    return (random_stream){state};
+}
+
+/* Uniform in [0,1). */
+static inline real random_next(random_stream *stream) {
+    stream->state += 0x9e3779b97f4a7c15u;
+    return R(random_mix(stream->state) >> (64 - MU_REAL_BITS)) / R(1ull << (MU_REAL_BITS - 1)) / 2;
+}
+
+#endif

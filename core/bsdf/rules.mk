@@ -3,7 +3,7 @@
 BSDF_SOURCES := $(wildcard core/bsdf/*.c)
 BSDF_OBJECTS := $(BSDF_SOURCES:%.c=$(BUILD)/obj/%.f.o) $(BSDF_SOURCES:%.c=$(BUILD)/obj/%.d.o)
 LIBRARIES += $(BUILD)/libmusurf.a $(BUILD)/libmusurf.so
-PUBLIC_HEADERS += core/bsdf/musurf.h
+PUBLIC_HEADERS += core/bsdf/musurf.h core/bsdf/musurf_real.h
 
 $(BUILD)/obj/core/bsdf/%.f.o: core/bsdf/%.c
 	@mkdir -p $(@D)

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * musurf_material.c: the shared object's one type, "musurf.microfacet": microfacet reflection whose
+ * microsurface is linearly transformed. Compile, describe, release, and the table that a host receives.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "plugin/musurf_compiled.h"
+
+enum { ALIGNMENT = 64 };
+
+/* Float shading holds alpha down to here and constant M up to this scale; beyond, D overflows or the table
+ * would. */
+static int float_suffices(const parsed *p) {
+    const double alpha = p->definition.alpha, scale = sqrt(mu_transform_determinant(p->definition.transform));
+    return alpha == 0 ||
+           (alpha >= 0x1p-30 && alpha <= 0x1p30 && (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
+}
+
+static const char *transform_class(const parsed *p) {
+    const double *m = p->definition.transform;
+    if (p->varying) return "varying";
+    if (m[1] != 0 || m[2] != 0) return "general";
+    return m[0] == 1 && m[3] == 1 ? "identity" : "diagonal";
+}
+
+/* Does shading depend on the tangent? Not if M turns and scales alike in all directions. */
+static int anisotropic(const parsed *p) {
+    const double *m = p->definition.transform;
+    const double length = m[0] * m[0] + m[1] * m[1], other = m[2] * m[2] + m[3] * m[3];
+    const double dot = m[0] * m[2] + m[1] * m[3];
+    return p->varying || fabs(length - other) > 1e-12 * (length + other) ||
+           fabs(dot) > 1e-12 * (length + other);
+}
+
+static void append(char *text, size_t size, const char *more) {
+    const size_t length = strlen(text);
+    snprintf(text + length, size - length, "%s%s", length ? ", " : "", more);
+}
+
+static void name_plan(musurf_material *m, const char *surface) {
+    const parsed *p = &m->parsed;
+    const int mirror = p->definition.alpha == 0;
+    snprintf(m->name, sizeof m->name, "%s%s%s%s%s", surface, mirror ? "" : ", ",
+             mirror ? "" : transform_class(p), mirror ? "" : " transform",
+             m->in_float ? "" : ", double precision");
+    if (p->definition.fresnel == MU_FRESNEL_NONE) append(m->left_out, sizeof m->left_out, "fresnel");
+    if (!p->varying) append(m->left_out, sizeof m->left_out, "slots");
+    if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
+    if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
+    if (!m->needs) append(m->left_out, sizeof m->left_out, "tangents");
+}
+
+static void *obtain(const musurf_host *host, size_t bytes) {
+    if (host && COVERS(host, release) && host->allocate)
+        return host->allocate(host->context, bytes, ALIGNMENT);
+    return aligned_alloc(ALIGNMENT, bytes);
+}
+
+static size_t padded(size_t bytes) {
+    return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
+
+static musurf_result compile(const musurf_host *host, const musurf_setting *settings, size_t count,
+                             musurf_material **out) {
+    parsed p;
+    *out = NULL;
+    const musurf_result result = musurf_parse(host, settings, count, &p);
+    if (result != MUSURF_OK) return result;
+
+    const int in_float = float_suffices(&p);
+    const size_t head = padded(sizeof(musurf_material)),
+                 double_bytes = padded(mu_surface_bytes_d(&p.definition));
+    const size_t bytes = head + double_bytes + (in_float ? padded(mu_surface_bytes_f(&p.definition)) : 0);
+    musurf_material *m = obtain(host, bytes);
+    if (!m) return MUSURF_NO_MEMORY;
+    memset(m, 0, sizeof *m);
+    m->parsed = p;
+    if (host && COVERS(host, release) && host->allocate) {
+        m->release = host->release;
+        m->context = host->context;
+    }
+    m->in_double = mu_surface_make_d(&p.definition, (char *)m + head);
+    if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
+    for (int i = 0; i < 2; i++) m->stretch[i] = (float)p.stretch[i];
+    const int mirror = p.definition.alpha == 0;
+    m->lobe = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
+    m->needs = (!mirror && anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
+               (p.varying ? (uint32_t)MUSURF_NEEDS_SLOTS : 0);
+    m->bytes = (uint32_t)bytes;
+    m->table_bytes = (uint32_t)(in_float ? mu_surface_table_bytes_f(m->in_float) : 0);
+    m->closure_bytes =
+        (uint32_t)(offsetof(bound, closure) + (in_float ? sizeof(mu_closure_f) : sizeof(mu_closure_d)));
+    name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
+    *out = m;
+    return MUSURF_OK;
+}
+
+static void release(musurf_material *material) {
+    if (!material) return;
+    if (material->release) {
+        material->release(material->context, material);
+    } else {
+        free(material);
+    }
+}
+
+static void describe(const musurf_material *m, musurf_plan *plan) {
+    const musurf_plan full = {
+        .size = plan->size,
+        .closure_bytes = m->closure_bytes,
+        .closure_alignment = _Alignof(bound),
+        .lobes =
+            m->lobe == MUSURF_DELTA_REFLECTION ? MUSURF_DELTA_REFLECTION | MUSURF_GLOSSY_REFLECTION : m->lobe,
+        .needs = m->needs,
+        .slot_floats = m->parsed.varying ? m->parsed.slot + 4 : 0,
+        .table_bytes = m->table_bytes,
+        .material_bytes = m->bytes,
+        .name = m->name,
+        .left_out = m->left_out,
+    };
+    memcpy(plan, &full, plan->size < sizeof full ? plan->size : sizeof full);
+}
+
+static const void *extension(const char *id) {
+    return strcmp(id, MUSURF_PROBE_ID) == 0 ? &musurf_probe_table : NULL;
+}
+
+static const musurf_material_type microfacet = {
+    .size = sizeof(musurf_material_type),
+    .param_count = PARAMETER_COUNT,
+    .id = "musurf.microfacet",
+    .label = "Transformed microfacets",
+    .doc = "Reflection by microfacets (GGX, Beckmann, GTR with exact Smith masking) whose microsurface is "
+           "deformed by "
+           "any linear map of the tangent plane.",
+    .params = musurf_parameters,
+    .compile = compile,
+    .release = release,
+    .describe = describe,
+    .setup = musurf_setup,
+    .eval = musurf_eval,
+    .sample = musurf_sample_one,
+    .pdf = musurf_pdf,
+    .albedo = musurf_albedo,
+    .blur = musurf_blur,
+    .eval_batch = musurf_eval_batch,
+    .sample_batch = musurf_sample_batch,
+    .extension = extension,
+};
+
+static const musurf_material_type *const types[] = {&microfacet};
+static const musurf_plugin plugin = {
+    .size = sizeof(musurf_plugin),
+    .abi_minor = MUSURF_ABI_MINOR,
+    .name = "musurf",
+    .version = MUSURF_VERSION,
+    .license = "MIT",
+    .type_count = 1,
+    .types = types,
+};
+
+const musurf_plugin *musurf_plugin_v1(void);
+const musurf_plugin *musurf_plugin_v1(void) {
+    return &plugin;
+}

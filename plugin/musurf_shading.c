@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* musurf_shading.c: the hot functions of "musurf.microfacet". Nothing here allocates, locks or calls the
+ * host. */
+#include <float.h>
+#include <string.h>
+
+#include "plugin/musurf_compiled.h"
+
+uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *slots, uint32_t mode,
+                      void *closure) {
+    (void)mode; /* reflection is the same for radiance and importance */
+    bound *b = closure;
+    b->material = m;
+    float transform[4];
+    if (m->parsed.varying) {
+        if (!slots) return 0;
+        for (int i = 0; i < 4; i++) transform[i] = slots[m->parsed.slot + (uint32_t)i] * m->stretch[i % 2];
+    }
+    if (m->in_float) {
+        if (!mu_bind_f(m->in_float, wo, m->parsed.varying ? transform : NULL, &b->closure.f)) return 0;
+    } else {
+        const double w[3] = {(double)wo[0], (double)wo[1], (double)wo[2]};
+        const double t[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
+                             (double)transform[3]};
+        if (!mu_bind_d(m->in_double, w, m->parsed.varying ? t : NULL, &b->closure.d)) return 0;
+    }
+    return m->lobe;
+}
+
+/* A blurred mirror is glossy. */
+static uint32_t lobe_of(const bound *b) {
+    const int mirror = b->material->in_float ? !b->closure.f.kernel : !b->closure.d.kernel;
+    return mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
+}
+
+static float rounded(double x) {
+    return x < (double)FLT_MAX ? (float)x : FLT_MAX;
+}
+
+static void eval_double(const bound *b, const float wi[3], mu_value_f *out) {
+    const double w[3] = {(double)wi[0], (double)wi[1], (double)wi[2]};
+    mu_value_d value;
+    mu_eval_d(&b->closure.d, w, &value);
+    for (int k = 0; k < 3; k++) out->f[k] = rounded(value.f[k]);
+    out->pdf = rounded(value.pdf);
+    out->pdf_reverse = rounded(value.pdf_reverse);
+}
+
+static inline void eval(const bound *b, const float wi[3], uint32_t lobes, musurf_value *out) {
+    mu_value_f value;
+    if (!(lobes & lobe_of(b) & MUSURF_GLOSSY_REFLECTION) || !(wi[2] > 0)) {
+        *out = (musurf_value){.lobes = 0};
+        return;
+    }
+    if (b->material->in_float) {
+        mu_eval_f(&b->closure.f, wi, &value);
+    } else {
+        eval_double(b, wi, &value);
+    }
+    for (int k = 0; k < 3; k++) out->f[k] = value.f[k] * wi[2];
+    out->pdf = value.pdf;
+    out->pdf_reverse = value.pdf_reverse;
+    out->lobes = MUSURF_GLOSSY_REFLECTION;
+}
+
+static void sample_double(const bound *b, const float u[3], mu_sample_f *out) {
+    const double v[3] = {(double)u[0], (double)u[1], (double)u[2]};
+    mu_sample_d s;
+    mu_sample_wi_d(&b->closure.d, v, &s);
+    for (int k = 0; k < 3; k++) {
+        out->wi[k] = (float)s.wi[k], out->wm[k] = (float)s.wm[k];
+        out->weight[k] = rounded(s.weight[k]);
+    }
+    out->pdf = rounded(s.pdf), out->pdf_reverse = rounded(s.pdf_reverse);
+    out->rejected = s.rejected || !(out->wi[2] > 0);
+    out->delta = s.delta;
+}
+
+static inline void sample(const bound *b, const float u[3], uint32_t lobes, musurf_sample *out) {
+    const uint32_t lobe = lobe_of(b);
+    mu_sample_f s;
+    *out = (musurf_sample){.eta = 1};
+    if (!(lobes & lobe)) return;
+    if (b->material->in_float) {
+        mu_sample_wi_f(&b->closure.f, u, &s);
+    } else {
+        sample_double(b, u, &s);
+    }
+    if (s.rejected) return;
+    memcpy(out->wi, s.wi, sizeof s.wi);
+    memcpy(out->wm, s.wm, sizeof s.wm);
+    memcpy(out->weight, s.weight, sizeof s.weight);
+    out->pdf = s.pdf;
+    out->pdf_reverse = s.pdf_reverse;
+    out->roughness = b->material->in_float ? b->closure.f.alpha : (float)b->closure.d.alpha;
+    out->lobe = lobe;
+}
+
+void musurf_eval(const void *closure, const float wi[3], uint32_t lobes, musurf_value *out) {
+    eval(closure, wi, lobes, out);
+}
+
+void musurf_sample_one(const void *closure, const float u[3], uint32_t lobes, musurf_sample *out) {
+    sample(closure, u, lobes, out);
+}
+
+float musurf_pdf(const void *closure, const float wi[3], uint32_t lobes) {
+    musurf_value value;
+    eval(closure, wi, lobes, &value);
+    return value.pdf;
+}
+
+/* Fresnel at the macrosurface: single scattering loses a little of it to masking. */
+void musurf_albedo(const void *closure, float rgb[3]) {
+    const bound *b = closure;
+    if (b->material->in_float) {
+        const mu_pair_values_f mirror = mu_pair_f(
+            &b->closure.f, (const float[3]){-b->closure.f.wo[0], -b->closure.f.wo[1], b->closure.f.wo[2]});
+        for (int k = 0; k < 3; k++) rgb[k] = mirror.F[k];
+    } else {
+        const mu_pair_values_d mirror = mu_pair_d(
+            &b->closure.d, (const double[3]){-b->closure.d.wo[0], -b->closure.d.wo[1], b->closure.d.wo[2]});
+        for (int k = 0; k < 3; k++) rgb[k] = (float)mirror.F[k];
+    }
+}
+
+void musurf_blur(void *closure, float alpha) {
+    bound *b = closure;
+    if (b->material->in_float) {
+        mu_blur_f(&b->closure.f, alpha);
+    } else {
+        mu_blur_d(&b->closure.d, (double)alpha);
+    }
+}
+
+void musurf_eval_batch(const void *closure, size_t closure_stride, const float *wi, size_t wi_stride,
+                       uint32_t lobes, musurf_value *out, size_t out_stride, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        eval((const void *)((const char *)closure + i * closure_stride),
+             (const void *)((const char *)wi + i * wi_stride), lobes, (void *)((char *)out + i * out_stride));
+    }
+}
+
+void musurf_sample_batch(const void *closure, size_t closure_stride, const float *u, size_t u_stride,
+                         uint32_t lobes, musurf_sample *out, size_t out_stride, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        sample((const void *)((const char *)closure + i * closure_stride),
+               (const void *)((const char *)u + i * u_stride), lobes, (void *)((char *)out + i * out_stride));
+    }
+}

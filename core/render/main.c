@@ -22,6 +22,7 @@ static const struct {
     {"eval", mu_command_eval, "values of materials at given directions, JSON Lines in and out"},
     {"sample", mu_command_sample, "directions drawn from a material"},
     {"render", mu_command_render, "an image of a scene file"},
+    {"check", mu_command_check, "the numerical validation: random materials, and those of scenes"},
     {"info", mu_command_info, "distributions, parameters, build"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * check_integrals.c: the integrals that make a microsurface valid: Eq. (3), Eq. (2), the projected area
+ * sigma, the distribution of visible normals, and what is reflected. The material is a black box; the
+ * coordinates are those of check_plane.h. Per area of slopes, dm = cos^3 dp.
+ *
+ * Tolerances: the quadrature's own estimate; the accuracy promised; and the rounding of the argument: a slope
+ * p = A s rounded by epsilon moves s by epsilon times the condition of A, and the distribution changes by its
+ * own size when s moves by one (a little more for steep tails: 16 stands for that).
+ */
+#include <math.h>
+
+#include "core/render/check_quadrature.h"
+#include "core/render/check_tests.h"
+
+typedef struct integral_context {
+    const mu_subject *subject;
+    const mu_region *region;
+    double view[3];
+    double sigma;
+    size_t refused; /* not a finite number >= 0, or no answer */
+    double refused_at[3];
+} integral_context;
+
+static mu_answer ask(integral_context *c, const double *wm, const double *wi) {
+    mu_answer a = mu_subject_ask(c->subject, c->view, wm, wi);
+    if (!a.ok) {
+        if (!c->refused++)
+            for (int i = 0; i < 3; i++) c->refused_at[i] = wm ? wm[i] : wi[i];
+        a = (mu_answer){.ok = 0};
+    }
+    return a;
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void normalisation_at(void *context, double x, double y, double value[MU_PARTS]) {
+    integral_context *c = context;
+    double m[3];
+    const double area = mu_region_point(c->region, x, y, m), cosine = m[2];
+    if (!(area > 0 && cosine > 0)) return;
+    const mu_answer a = ask(c, m, NULL);
+    value[0] = a.value[MU_AT_D] * cosine * cosine * cosine * cosine * area; /* Eq. (3), (4) */
+}
+
+static void visible_at(void *context, double x, double y, double value[MU_PARTS]) {
+    integral_context *c = context;
+    double m[3];
+    const double area = mu_region_point(c->region, x, y, m), cosine = m[2];
+    const double facing = dot(c->view, m);
+    if (!(area > 0 && cosine > 0 && facing > 0)) return;
+    const mu_answer a = ask(c, m, NULL);
+    const double dm = cosine * cosine * cosine * area;
+    value[0] = a.value[MU_AT_D] * a.value[MU_AT_G1] * facing * dm / c->view[2]; /* Eq. (2) */
+    value[1] = a.value[MU_AT_DV] * dm;
+    value[2] = a.value[MU_AT_D] * facing * dm / c->sigma;
+}
+
+static void reflected_at(void *context, double x, double y, double value[MU_PARTS]) {
+    integral_context *c = context;
+    double m[3], wi[3];
+    const double area = mu_region_point(c->region, x, y, m), cosine = m[2];
+    const double facing = dot(c->view, m);
+    for (int i = 0; i < 3; i++) wi[i] = 2 * facing * m[i] - c->view[i];
+    if (!(area > 0 && cosine > 0 && facing > 0 && wi[2] > 0)) return;
+    const mu_answer a = ask(c, NULL, wi);
+    const double dwi = 4 * facing * cosine * cosine * cosine * area;
+    const double pdf = a.value[MU_AT_PDF], weighted = a.value[MU_AT_F] * wi[2];
+    value[0] = pdf * dwi;
+    value[1] = weighted * dwi;
+    value[2] = pdf > 0 ? weighted * weighted / pdf * dwi : 0;
+}
+
+/* What quadrature is asked for: well above rounding, far below any fault worth finding. */
+static double wanted(const mu_subject *subject) {
+    return subject->precision == MUSURF_FLOAT ? 1e-4 : 1e-9;
+}
+
+static double noise(const mu_subject *subject) {
+    return 16 * mu_subject_epsilon(subject) * subject->plane.condition;
+}
+
+static mu_integral integrate(integral_context *c, const mu_check_effort *effort, mu_integrand integrand,
+                             size_t parts, double rounding) {
+    const double target = fmax(wanted(c->subject), rounding);
+    const mu_quadrature q = {.integrand = integrand,
+                             .context = c,
+                             .parts = parts,
+                             .target = {target, target, target, 0},
+                             .panel_limit = effort->panels,
+                             .rule = MU_KRONROD_15};
+    return mu_integrate(&q, (const double[2]){0, 1}, 8, (const double[2]){0, 2}, 4);
+}
+
+static void judge(integral_context *c, mu_law law, const mu_integral *integral, size_t part, double rounding,
+                  mu_tally *tally) {
+    const double tolerance = integral->error[part] + mu_subject_accuracy(c->subject) + rounding;
+    const mu_case at = {c->subject, law == MU_LAW_NORMALISATION ? NULL : c->view, NULL, NULL};
+    const double error = integral->value[part] - 1;
+    if (integral->panels == 0 || (tolerance > 0.01 && !(fabs(error) > tolerance)))
+        mu_tally_unresolved(tally, law, at);
+    else
+        mu_tally_error(tally, law, error, tolerance, at);
+}
+
+static void judge_refusals(integral_context *c, _Bool normals, mu_tally *tally) {
+    const double *where = c->refused_at;
+    const mu_case at = {c->subject, c->view, normals ? where : NULL, normals ? NULL : where};
+    mu_tally_error(tally, MU_LAW_RANGE, c->refused ? NAN : 0, 1, at);
+}
+
+void mu_check_normalisation(const mu_subject *subject, const mu_check_effort *effort, mu_tally *tally) {
+    integral_context c = {.subject = subject, .view = {0, 0, 1}};
+    const mu_region region = mu_region_make(&subject->plane, MU_WHOLE_PLANE, c.view);
+    c.region = &region;
+    const mu_integral integral = integrate(&c, effort, normalisation_at, 1, noise(subject));
+    judge(&c, MU_LAW_NORMALISATION, &integral, 0, noise(subject), tally);
+    judge_refusals(&c, 1, tally);
+}
+
+/* Masked and hidden: G1 and Dv must vanish on the slopes that face away. */
+static void check_hidden(const mu_subject *subject, const double view[3], mu_tally *tally) {
+    const mu_region whole = mu_region_make(&subject->plane, MU_WHOLE_PLANE, view);
+    for (int i = 0; i < 8; i++) {
+        double m[3];
+        mu_region_point(&whole, (1 - whole.low / 4 + i) / -whole.low, .5, m);
+        if (!(dot(view, m) < -1e-6 * fabs(view[2]))) continue;
+        const mu_answer a = mu_subject_ask(subject, view, m, NULL);
+        mu_tally_error(tally, MU_LAW_HIDDEN_NORMALS, a.value[MU_AT_G1] + a.value[MU_AT_DV], 0x1p-1000,
+                       (mu_case){subject, view, m, NULL});
+    }
+}
+
+void mu_check_visible(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                      mu_tally *tally) {
+    integral_context c = {.subject = subject, .view = {view[0], view[1], view[2]}};
+    const mu_region region = mu_region_make(&subject->plane, MU_VISIBLE_SLOPES, view);
+    c.region = &region;
+    c.sigma = mu_subject_ask(subject, view, NULL, NULL).value[MU_AT_SIGMA];
+    const mu_integral integral = integrate(&c, effort, visible_at, 3, noise(subject));
+    judge(&c, MU_LAW_MASKING, &integral, 0, noise(subject), tally);
+    judge(&c, MU_LAW_VISIBLE_NORMALS, &integral, 1, noise(subject), tally);
+    judge(&c, MU_LAW_PROJECTED_AREA, &integral, 2, noise(subject), tally);
+    judge_refusals(&c, 1, tally);
+    check_hidden(subject, view, tally);
+}
+
+mu_reflected mu_check_reflected(const mu_subject *subject, const mu_check_effort *effort,
+                                const double view[3], mu_tally *tally) {
+    integral_context c = {.subject = subject, .view = {view[0], view[1], view[2]}};
+    const mu_region region = mu_region_make(&subject->plane, MU_REFLECTING_SLOPES, view);
+    c.region = &region;
+    /* The normal is recovered from wi, rounded to epsilon, as a half-vector of length 2 v.m > v.n. */
+    const double rounding = 16 * mu_subject_epsilon(subject) *
+                            (subject->plane.condition + 1 / (view[2] * fmin(1, subject->plane.narrowest)));
+    const mu_case at = {subject, view, NULL, NULL};
+    mu_reflected out = {.resolved = 0};
+    if (rounding < 1e-3) {
+        const mu_integral integral = integrate(&c, effort, reflected_at, 3, rounding);
+        out.pdf = integral.value[0];
+        out.albedo = integral.value[1];
+        out.square = integral.value[2];
+        out.error = fmax(integral.error[0], integral.error[1]) + mu_subject_accuracy(subject) + rounding;
+        out.resolved = integral.panels && out.error < 1e-3;
+        judge_refusals(&c, 0, tally);
+    }
+    if (out.resolved)
+        mu_tally_error(tally, MU_LAW_FURNACE, fmax(0, out.albedo - 1), out.error, at);
+    else
+        mu_tally_unresolved(tally, MU_LAW_FURNACE, at);
+    return out;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* check_material.c: see check_material.h. */
+#include "core/render/check_material.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precision precision,
+                   mu_error *error) {
+    const musurf_material_type *type = out->material.type;
+    const musurf_probe *probe = type->extension ? type->extension(MUSURF_PROBE_ID) : NULL;
+    if (out->material.jacobian.map != MU_JACOBIAN_NONE || out->material.plan.needs & MUSURF_NEEDS_SLOTS)
+        return mu_place_fail(place, error, "varies over the surface");
+    if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample)
+        return mu_place_fail(place, error, "%s does not offer %s", type->id, MUSURF_PROBE_ID);
+    out->subject = (mu_subject){.type = type,
+                                .material = out->material.compiled,
+                                .probe = probe,
+                                .precision = precision,
+                                .json = out->json};
+    const double up[3] = {0, 0, 1};
+    musurf_probe_values values;
+    memset(&values, 0, sizeof values);
+    if (probe->evaluate(out->material.compiled, precision, up, up, up, &values) != MUSURF_OK)
+        return mu_place_fail(place, error, "the probe of %s does not answer", type->id);
+    if (values.delta) return mu_place_fail(place, error, "is a mirror and has no density");
+    if (!mu_subject_find_sampler(&out->subject))
+        return mu_place_fail(place, error, "is sampled neither by visible normals nor by D cos");
+    return 1;
+}
+
+_Bool mu_check_material_read(mu_check_material *out, mu_plugins *plugins, const mu_place *place,
+                             musurf_precision precision, mu_error *error) {
+    *out = (mu_check_material){.json = NULL};
+    if (!mu_material_read(&out->material, plugins, place, error)) return 0;
+    out->json = json_dumps(place->value, JSON_REAL_PRECISION(17));
+    if (out->json ? probe(out, place, precision, error) : mu_fail(error, "not enough memory")) return 1;
+    mu_check_material_free(out);
+    return 0;
+}
+
+_Bool mu_check_material_parse(mu_check_material *out, mu_plugins *plugins, const char *json,
+                              musurf_precision precision, mu_error *error) {
+    mu_document document;
+    if (!mu_document_parse(&document, "random material", json, strlen(json), 1, error)) return 0;
+    const mu_place root = mu_place_root(&document);
+    const _Bool good = mu_check_material_read(out, plugins, &root, precision, error);
+    mu_document_free(&document);
+    return good;
+}
+
+void mu_check_material_free(mu_check_material *material) {
+    mu_material_free(&material->material);
+    free(material->json);
+    *material = (mu_check_material){.json = NULL};
+}

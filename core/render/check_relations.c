@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * check_relations.c: what M must do, said without the code under test: by comparing a material with its
+ * original, with itself turned, and with the textbook's anisotropic GGX. This alone tells M from its inverse
+ * or transpose: each of those makes a valid microsurface that satisfies every integral.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "core/render/check_tests.h"
+
+static void compare(mu_tally *tally, mu_law law, const mu_subject *subject, double a, double b, double slack,
+                    mu_case at) {
+    const double size = fmax(fabs(a), fabs(b));
+    mu_tally_error(tally, law, size > 0 ? a - b : 0,
+                   size > 0 ? mu_subject_accuracy(subject) * size + slack : 1, at);
+}
+
+static _Bool sample(const mu_subject *subject, musurf_sampler sampler, const double view[3],
+                    mu_stream *random, musurf_probe_sample *s) {
+    double u[3];
+    for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(random);
+    memset(s, 0, sizeof *s);
+    return subject->probe->sample(subject->material, subject->precision, sampler, view, u, s) == MUSURF_OK &&
+           s->wm[2] > 0;
+}
+
+static void normalise(double w[3]) {
+    const double length = hypot(hypot(w[0], w[1]), w[2]);
+    for (int c = 0; c < 3; c++) w[c] /= length;
+}
+
+/* P22 of the original at M^T p, for p of a slightly moved m: what the rounding of m allows. */
+static double expected_density(const mu_subject *original, const double m[4], double determinant,
+                               const double view[3], const double wm[3], double nudge_x, double nudge_y) {
+    const double px = -wm[0] / wm[2] * (1 + nudge_x), py = -wm[1] / wm[2] * (1 + nudge_y);
+    double u[3] = {-(m[0] * px + m[2] * py), -(m[1] * px + m[3] * py), 1};
+    normalise(u);
+    const mu_answer a = mu_subject_ask(original, view, u, NULL);
+    const double ratio = u[2] / wm[2];
+    return determinant * a.value[MU_AT_D] * ratio * ratio * ratio * ratio;
+}
+
+static void check_slopes(const mu_subject *subject, const mu_subject *original, const double m[4],
+                         double determinant, const double view[3], const double wm[3], mu_tally *tally) {
+    const double epsilon = mu_subject_epsilon(subject);
+    const mu_answer a = mu_subject_ask_rounded(subject, epsilon, view, wm, NULL);
+    const double expected = expected_density(original, m, determinant, view, wm, 0, 0);
+    double slack = a.slack[MU_AT_D];
+    for (int i = 0; i < 4; i++) {
+        const double moved = expected_density(original, m, determinant, view, wm, (i & 1 ? 4 : -4) * epsilon,
+                                              (i & 2 ? 4 : -4) * epsilon);
+        slack = fmax(slack, fabs(moved - expected));
+    }
+    /* det M itself is rounded: by epsilon times the condition of M at most. */
+    compare(tally, MU_LAW_SLOPES_COVARIANT, subject, a.value[MU_AT_D], expected,
+            2 * slack +
+                4 * epsilon * expected * (subject->precision == MUSURF_FLOAT ? subject->plane.condition : 1),
+            (mu_case){subject, view, wm, NULL});
+}
+
+/* M^-1 v = adj(M) v / det, its z is v.z. */
+static void pull_back(const double m[4], double signed_determinant, const double v[3], double w[3]) {
+    w[0] = fma(m[3], v[0], -m[1] * v[1]) / signed_determinant;
+    w[1] = fma(m[0], v[1], -m[2] * v[0]) / signed_determinant;
+    w[2] = v[2];
+}
+
+static void check_masking(const mu_subject *subject, const mu_subject *original, const double m[4],
+                          double signed_determinant, const double view[3], mu_tally *tally) {
+    const double epsilon = mu_subject_epsilon(subject);
+    const mu_answer a = mu_subject_ask_rounded(subject, epsilon, view, NULL, NULL);
+    double w[3], expected = 0, slack = a.slack[MU_AT_SIGMA];
+    for (int i = 0; i < 5; i++) {
+        const double v[3] = {view[0] * (1 + (i == 1   ? 4
+                                             : i == 2 ? -4
+                                                      : 0) *
+                                                epsilon),
+                             view[1] * (1 + (i == 3   ? 4
+                                             : i == 4 ? -4
+                                                      : 0) *
+                                                epsilon),
+                             view[2]};
+        pull_back(m, signed_determinant, v, w);
+        const double length = hypot(hypot(w[0], w[1]), w[2]);
+        for (int c = 0; c < 3; c++) w[c] /= length;
+        const double value = length * mu_subject_ask(original, w, NULL, NULL).value[MU_AT_SIGMA];
+        if (i == 0)
+            expected = value;
+        else
+            slack = fmax(slack, fabs(value - expected));
+    }
+    /* sigma_M(v) = |M^-1 v| sigma(M^-1 v / |M^-1 v|); with G1 = v.z / sigma this is Eq. (12). */
+    compare(tally, MU_LAW_MASKING_INVARIANT, subject, a.value[MU_AT_SIGMA], expected,
+            2 * slack +
+                4 * epsilon * expected * (subject->precision == MUSURF_FLOAT ? subject->plane.condition : 1),
+            (mu_case){subject, view, NULL, NULL});
+}
+
+void mu_check_transform(const mu_subject *subject, const mu_subject *original, const double m[4],
+                        const mu_check_effort *effort, const double view[3], mu_stream *random,
+                        mu_tally *tally) {
+    const double product = m[1] * m[2];
+    const double determinant = fma(m[0], m[3], -product) + fma(-m[1], m[2], product);
+    const double up[3] = {0, 0, 1};
+    check_masking(subject, original, m, determinant, view, tally);
+    for (size_t n = 0; n < effort->points; n++) {
+        /* Normals of either material: a wrong M shows where only one of them has normals. */
+        musurf_probe_sample s;
+        if (!sample(n & 1 ? subject : original, MUSURF_SAMPLE_NDF, up, random, &s)) continue;
+        check_slopes(subject, original, m, fabs(determinant), view, s.wm, tally);
+    }
+}
+
+static void turn(double angle, const double in[3], double out[3]) {
+    const double x = in[0], y = in[1];
+    out[0] = cos(angle) * x - sin(angle) * y;
+    out[1] = sin(angle) * x + cos(angle) * y;
+    out[2] = in[2];
+}
+
+void mu_check_rotation(const mu_subject *subject, const mu_subject *turned, double angle,
+                       const mu_check_effort *effort, const double view[3], mu_stream *random,
+                       mu_tally *tally) {
+    const double epsilon = mu_subject_epsilon(subject);
+    static const int compared[] = {MU_AT_F, MU_AT_PDF, MU_AT_G2};
+    for (size_t n = 0; n < effort->points; n++) {
+        musurf_probe_sample s;
+        if (!sample(subject, MUSURF_SAMPLE_AS_SET, view, random, &s) || s.rejected) continue;
+        double o[3], i[3];
+        turn(angle, view, o);
+        turn(angle, s.wi, i);
+        /* The turn rounds at the size of the whole direction: epsilon of its horizontal part, in each
+         * component. */
+        const double scale = 1 / fmax(1e-3, fmin(fabs(cos(angle)), fabs(sin(angle))));
+        const mu_answer a = mu_subject_ask_rounded(subject, scale * epsilon, view, NULL, s.wi);
+        const mu_answer b = mu_subject_ask_rounded(turned, scale * epsilon, o, NULL, i);
+        for (size_t k = 0; k < sizeof compared / sizeof *compared; k++)
+            compare(tally, MU_LAW_ROTATION, subject, a.value[compared[k]], b.value[compared[k]],
+                    2 * (a.slack[compared[k]] + b.slack[compared[k]]), (mu_case){subject, view, NULL, s.wi});
+    }
+}
+
+void mu_check_classic(const mu_subject *subject, double ax, double ay, const mu_check_effort *effort,
+                      const double view[3], mu_stream *random, mu_tally *tally) {
+    const double epsilon = mu_subject_epsilon(subject), pi = 3.14159265358979323846;
+    /* Heitz 2014, "Understanding the masking-shadowing function", Eq. (85) and (86), as slopes over
+     * roughness. */
+    const double lean = hypot(ax * view[0], ay * view[1]), root = hypot(view[2], lean);
+    const mu_answer v = mu_subject_ask(subject, view, NULL, NULL);
+    compare(tally, MU_LAW_CLASSIC, subject, v.value[MU_AT_SIGMA], (view[2] + root) / 2, 0,
+            (mu_case){subject, view, NULL, NULL});
+    for (size_t n = 0; n < effort->points; n++) {
+        const double r = exp(mu_stream_between(random, -8, 4)), phi = mu_stream_between(random, 0, 2 * pi);
+        double m[3] = {ax * r * cos(phi), ay * r * sin(phi), 1};
+        normalise(m);
+        const double sx = m[0] / (ax * m[2]), sy = m[1] / (ay * m[2]), t = 1 + sx * sx + sy * sy;
+        const double c2 = m[2] * m[2];
+        const mu_answer a = mu_subject_ask_rounded(subject, epsilon, view, m, NULL);
+        compare(tally, MU_LAW_CLASSIC, subject, a.value[MU_AT_D], 1 / (pi * ax * ay * c2 * c2 * t * t),
+                2 * a.slack[MU_AT_D], (mu_case){subject, view, m, NULL});
+    }
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * check_samplers.c: do the samplers draw what the densities say? chi^2 of the micronormals; for the
+ * material's own sampler also the share of rejected samples and the mean weight, against quadrature of pdf
+ * and f cos.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/render/check_chi2.h"
+#include "core/render/check_probability.h"
+#include "core/render/check_tests.h"
+
+typedef struct density_of {
+    const mu_subject *subject;
+    const double *view;
+    int quantity;
+} density_of;
+
+static double slope_density(void *context, const double m[3]) {
+    const density_of *d = context;
+    const mu_answer a = mu_subject_ask(d->subject, d->view, m, NULL);
+    const double dm = m[2] * m[2] * m[2];
+    if (!(dm > 0)) return 0; /* beyond e^37: nothing is there */
+    return a.value[d->quantity] * dm * (d->quantity == MU_AT_D ? m[2] : 1);
+}
+
+typedef struct outcome {
+    double rejected, weights; /* sums */
+    double largest;           /* weight */
+    double worst_wi[3];
+    _Bool ok;
+} outcome;
+
+static outcome draw(const mu_subject *subject, size_t samples, musurf_sampler sampler, const double view[3],
+                    mu_stream *random, mu_cells *cells) {
+    outcome out = {.ok = 1};
+    for (size_t n = 0; n < samples && out.ok; n++) {
+        double u[3];
+        for (int c = 0; c < 3; c++)
+            u[c] = subject->precision == MUSURF_FLOAT ? (double)mu_stream_float(random)
+                                                      : mu_stream_uniform(random);
+        musurf_probe_sample s;
+        memset(&s, 0, sizeof s);
+        out.ok =
+            subject->probe->sample(subject->material, subject->precision, sampler, view, u, &s) == MUSURF_OK;
+        if (cells) mu_cells_add(cells, s.wm);
+        if (s.rejected) {
+            out.rejected++;
+            continue;
+        }
+        out.weights += s.weight[1];
+        for (int c = 0; c < 3; c++)
+            if (!(s.weight[c] <= out.largest)) {
+                out.largest = s.weight[c];
+                memcpy(out.worst_wi, s.wi, sizeof s.wi);
+            }
+    }
+    return out;
+}
+
+/* A shading call samples the same density through another door. What it rejects has no normal, so the cells
+ * cover the slopes that reflect upwards, and all else is one outcome. */
+static void draw_shading(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                         density_of *density, mu_stream *random, mu_tally *tally) {
+    const mu_case at = {subject, view, NULL, NULL};
+    const mu_region region = mu_region_make(&subject->plane, MU_REFLECTING_SLOPES, view);
+    musurf_plan plan = {.size = sizeof plan};
+    subject->type->describe(subject->material, &plan);
+    mu_cells *cells = mu_cells_make(&region, slope_density, density, effort->cells);
+    void *closure = aligned_alloc(64, ((size_t)plan.closure_bytes + 64) / 64 * 64);
+    if (!cells || !closure || mu_cells_error(cells) > 0.05) {
+        mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
+    } else {
+        const float wo[3] = {(float)view[0], (float)view[1], (float)view[2]};
+        const _Bool lit = subject->type->setup(subject->material, wo, NULL, 0, closure) != 0;
+        for (size_t n = 0; lit && n < effort->samples; n++) {
+            const float u[3] = {mu_stream_float(random), mu_stream_float(random), mu_stream_float(random)};
+            musurf_sample s;
+            subject->type->sample(closure, u, MUSURF_ALL_LOBES, &s);
+            const double m[3] = {(double)s.wm[0], (double)s.wm[1], s.lobe ? (double)s.wm[2] : -1};
+            mu_cells_add(cells, m);
+        }
+        mu_tally_p(tally, MU_LAW_SHADING_SAMPLER, lit ? mu_cells_p(cells) : 0, at);
+    }
+    free(closure);
+    mu_cells_free(cells);
+}
+
+static void judge_own(const mu_subject *subject, double samples, const double view[3],
+                      const mu_reflected *reflected, const outcome *out, mu_tally *tally) {
+    const mu_case at = {subject, view, NULL, NULL}, worst = {subject, view, NULL, out->worst_wi};
+    const _Bool visible = subject->sampler == MUSURF_SAMPLE_VISIBLE;
+    if (visible) /* F G2/G1 <= 1 */
+        mu_tally_error(tally, MU_LAW_WEIGHT_BOUND, fmax(0, out->largest - 1), mu_subject_accuracy(subject),
+                       worst);
+    if (!reflected->resolved) {
+        mu_tally_unresolved(tally, MU_LAW_REJECTION, at);
+        if (visible) mu_tally_unresolved(tally, MU_LAW_ALBEDO, at);
+        return;
+    }
+    const double miss = fabs(reflected->pdf + out->rejected / samples - 1) - reflected->error;
+    const double share = fmin(1, fmax(0, reflected->pdf));
+    mu_tally_p(tally, MU_LAW_REJECTION, mu_bernstein_p(miss, share * (1 - share), 1, samples), at);
+    if (!visible) return; /* weights without a bound: no distribution-free test */
+    const double gap = fabs(reflected->albedo - out->weights / samples) - reflected->error;
+    const double variance =
+        fmax(0, reflected->square - reflected->albedo * reflected->albedo) + reflected->error;
+    mu_tally_p(tally, MU_LAW_ALBEDO, mu_bernstein_p(gap, variance, 1, samples), at);
+}
+
+void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, musurf_sampler sampler,
+                      const double view[3], const mu_reflected *reflected, mu_stream *random,
+                      mu_tally *tally) {
+    const _Bool visible = sampler == MUSURF_SAMPLE_VISIBLE;
+    const mu_law law = visible ? MU_LAW_VISIBLE_SAMPLER : MU_LAW_NDF_SAMPLER;
+    const mu_case at = {subject, view, NULL, NULL};
+    const mu_region region =
+        mu_region_make(&subject->plane, visible ? MU_VISIBLE_SLOPES : MU_WHOLE_PLANE, view);
+    density_of density = {subject, view, visible ? MU_AT_DV : MU_AT_D};
+    mu_cells *cells = mu_cells_make(&region, slope_density, &density, effort->cells);
+    /* Rounding must not carry samples across cells: these are some 1/20 wide. */
+    const _Bool sharp = subject->plane.condition * mu_subject_epsilon(subject) < 1e-3;
+    const _Bool resolved = cells && sharp && mu_cells_error(cells) < 0.05;
+    const outcome out = draw(subject, effort->samples, sampler, view, random, resolved ? cells : NULL);
+    if (resolved)
+        mu_tally_p(tally, law, out.ok ? mu_cells_p(cells) : 0, at);
+    else
+        mu_tally_unresolved(tally, law, at);
+    if (sampler == subject->sampler) {
+        judge_own(subject, (double)effort->samples, view, reflected, &out, tally);
+        if (subject->type) {
+            if (subject->plane.condition * 0x1p-24 < 1e-3)
+                draw_shading(subject, effort, view, &density, random, tally);
+            else
+                mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
+        }
+    }
+    mu_cells_free(cells);
+}

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* check_subject.c: asking the probe; see check_subject.h. */
+#include "core/render/check_subject.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/render/check_random.h"
+
+double mu_subject_epsilon(const mu_subject *subject) {
+    return subject->precision == MUSURF_FLOAT ? 0x1p-24 : 0x1p-53;
+}
+
+double mu_subject_accuracy(const mu_subject *subject) {
+    return subject->precision == MUSURF_FLOAT ? 4e-4 : 4e-12;
+}
+
+mu_answer mu_subject_ask(const mu_subject *subject, const double wo[3], const double *wm, const double *wi) {
+    musurf_probe_values v;
+    mu_answer answer = {.ok = 0};
+    memset(&v, 0, sizeof v);
+    if (subject->probe->evaluate(subject->material, subject->precision, wo, wm, wi, &v) != MUSURF_OK)
+        return answer;
+    const double value[MU_AT_COUNT] = {
+        [MU_AT_SIGMA] = v.sigma, [MU_AT_D] = v.D,   [MU_AT_G1] = v.G1,  [MU_AT_DV] = v.Dv,
+        [MU_AT_F] = v.f[1],      [MU_AT_G2] = v.G2, [MU_AT_PDF] = v.pdf};
+    answer.ok = 1;
+    for (int i = 0; i < MU_AT_COUNT; i++) {
+        answer.value[i] = value[i];
+        if (!(isfinite(value[i]) && value[i] >= 0)) answer.ok = 0;
+    }
+    return answer;
+}
+
+static double signed_four(mu_stream *random) {
+    return mu_stream_below(random, 2) ? 4 : -4;
+}
+
+static void normalise(double w[3]) {
+    const double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    for (int c = 0; c < 3; c++) w[c] /= length;
+}
+
+static void perturb(mu_stream *random, double epsilon, const double w[3], double out[3]) {
+    for (int c = 0; c < 3; c++) out[c] = w[c] * (1 + signed_four(random) * epsilon);
+    normalise(out);
+}
+
+/* The sum of two rounded directions is off by epsilon (|wo| + |wi|) in each component, which weighs the more
+ * the shorter the sum is: move the half-vector by that, and reflect wo by it. */
+static void perturb_half(mu_stream *random, double epsilon, const double wo[3], const double wi[3],
+                         double out[3]) {
+    double h[3], facing = 0;
+    for (int c = 0; c < 3; c++)
+        h[c] = wo[c] + wi[c] + signed_four(random) * epsilon * (fabs(wo[c]) + fabs(wi[c]));
+    normalise(h);
+    for (int c = 0; c < 3; c++) facing += wo[c] * h[c];
+    for (int c = 0; c < 3; c++) out[c] = 2 * facing * h[c] - wo[c];
+    normalise(out);
+}
+
+mu_answer mu_subject_ask_rounded(const mu_subject *subject, double epsilon, const double wo[3],
+                                 const double *wm, const double *wi) {
+    mu_answer answer = mu_subject_ask(subject, wo, wm, wi);
+    mu_stream random = mu_stream_make(0x736c61636bu, 0); /* the same signs each time */
+    for (int trial = 0; answer.ok && trial < 8; trial++) {
+        double o[3], m[3], i[3];
+        perturb(&random, epsilon, wo, o);
+        if (wm) perturb(&random, epsilon, wm, m);
+        if (wi) perturb_half(&random, epsilon, o, wi, i);
+        const mu_answer moved = mu_subject_ask(subject, o, wm ? m : NULL, wi ? i : NULL);
+        for (int k = 0; k < MU_AT_COUNT; k++) {
+            const double change = fabs(moved.value[k] - answer.value[k]);
+            answer.slack[k] = fmax(answer.slack[k], isnan(change) ? INFINITY : change);
+        }
+    }
+    return answer;
+}
+
+_Bool mu_subject_find_sampler(mu_subject *subject) {
+    mu_stream random = mu_stream_make(0x73616d706c6572u, 0);
+    const double wo[3] = {.6, 0, .8};
+    _Bool visible = 1, ndf = 1;
+    for (int n = 0; n < 32; n++) {
+        double u[3];
+        for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
+        musurf_probe_sample s[3];
+        memset(s, 0, sizeof s);
+        for (int kind = 0; kind < 3; kind++)
+            if (subject->probe->sample(subject->material, subject->precision, (musurf_sampler)kind, wo, u,
+                                       &s[kind]) != MUSURF_OK)
+                return 0;
+        for (int c = 0; c < 3; c++) {
+            visible = visible && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_VISIBLE].wm[c];
+            ndf = ndf && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_NDF].wm[c];
+        }
+    }
+    subject->sampler = visible ? MUSURF_SAMPLE_VISIBLE : MUSURF_SAMPLE_NDF;
+    return visible != ndf;
+}
+
+_Bool mu_subject_find_plane(mu_subject *subject) {
+    enum { COUNT = 2048 };
+    mu_stream random = mu_stream_make(0x706c616e65u, 0);
+    const double wo[3] = {0, 0, 1};
+    double slopes[2 * COUNT], scratch[2 * COUNT];
+    int count = 0;
+    for (int n = 0; n < COUNT; n++) {
+        double u[3];
+        for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
+        musurf_probe_sample s;
+        memset(&s, 0, sizeof s);
+        if (subject->probe->sample(subject->material, subject->precision, MUSURF_SAMPLE_NDF, wo, u, &s) !=
+            MUSURF_OK)
+            return 0;
+        if (!(s.wm[2] > 0)) continue;
+        slopes[2 * count] = -s.wm[0] / s.wm[2];
+        slopes[2 * count++ + 1] = -s.wm[1] / s.wm[2];
+    }
+    return count > COUNT / 2 && mu_plane_from_slopes(&subject->plane, slopes, count, scratch);
+}

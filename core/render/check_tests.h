@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * check_tests.h: the groups of comparisons that `musurf check` makes of one material. Each writes into the
+ * tally of its thread. In all, `view` is a unit vector with z > 0.
+ */
+#ifndef MU_CHECK_TESTS_H
+#define MU_CHECK_TESTS_H
+
+#include <stdint.h>
+
+#include "core/render/check_random.h"
+#include "core/render/check_tally.h"
+
+typedef struct mu_check_effort {
+    size_t panels;  /* of adaptive quadrature */
+    size_t samples; /* of each sampler and view */
+    size_t cells;   /* of each chi^2 */
+    size_t points;  /* compared pointwise per view */
+} mu_check_effort;
+
+/* What the reflected half of the sphere holds, by quadrature. */
+typedef struct mu_reflected {
+    double pdf;    /* integral of pdf over wi.z > 0 */
+    double albedo; /* integral of f cos */
+    double square; /* integral of (f cos)^2 / pdf: the second moment of the weight */
+    double error;  /* of pdf and albedo, quadrature and rounding */
+    _Bool resolved;
+} mu_reflected;
+
+/* Eq. (3). */
+void mu_check_normalisation(const mu_subject *subject, const mu_check_effort *effort, mu_tally *tally);
+/* Eq. (2), sigma, Dv. */
+void mu_check_visible(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                      mu_tally *tally);
+mu_reflected mu_check_reflected(const mu_subject *subject, const mu_check_effort *effort,
+                                const double view[3], mu_tally *tally);
+
+/* chi^2 of one sampler; of the material's own sampler also its rejections and weights, and its shading calls.
+ */
+void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, musurf_sampler sampler,
+                      const double view[3], const mu_reflected *reflected, mu_stream *random,
+                      mu_tally *tally);
+
+/* Identities between the quantities at sampled directions. */
+void mu_check_points(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                     mu_stream *random, mu_tally *tally);
+
+/* The float shading calls against the probe. */
+void mu_check_shading(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                      mu_stream *random, mu_tally *tally);
+
+/* A material and its original: the same microsurface before M (rows) was applied. */
+void mu_check_transform(const mu_subject *subject, const mu_subject *original, const double m[4],
+                        const mu_check_effort *effort, const double view[3], mu_stream *random,
+                        mu_tally *tally);
+/* `turned` is the subject with M turned by `angle` about the normal. */
+void mu_check_rotation(const mu_subject *subject, const mu_subject *turned, double angle,
+                       const mu_check_effort *effort, const double view[3], mu_stream *random,
+                       mu_tally *tally);
+/* GGX with the textbook's roughness along x and y. */
+void mu_check_classic(const mu_subject *subject, double alpha_x, double alpha_y,
+                      const mu_check_effort *effort, const double view[3], mu_stream *random,
+                      mu_tally *tally);
+
+#endif

@@ -173,12 +173,15 @@ static _Bool gather_all(mu_gather *gather) {
     return mu_mesh_fill_normals(mesh, gather->error);
 }
 
-static _Bool known_format(const char *file) {
-    static const char *const suffixes[] = {".obj", ".ply", ".gltf", ".glb"};
+static _Bool has_suffix(const char *file, const char *suffix) {
     const char *dot = strrchr(file, '.');
-    for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; ++i)
-        if (!strcasecmp(dot, suffixes[i])) return 1;
-    return 0;
+    return dot && !strcasecmp(dot, suffix);
+}
+
+static _Bool check_format(const char *file, mu_error *error) {
+    if (has_suffix(file, ".ply")) return mu_ply_check(file, error);
+    if (has_suffix(file, ".obj") || has_suffix(file, ".gltf") || has_suffix(file, ".glb")) return 1;
+    return mu_fail(error, "%s: not a mesh file; must be .obj, .ply, .gltf or .glb", file);
 }
 
 _Bool mu_mesh_read(mu_mesh *mesh, const char *file, uint32_t *dropped, mu_error *error) {
@@ -186,8 +189,7 @@ _Bool mu_mesh_read(mu_mesh *mesh, const char *file, uint32_t *dropped, mu_error 
     *dropped = 0;
     memset(mesh, 0, sizeof *mesh);
     if (access(file, R_OK)) return mu_fail(error, "%s: %s", file, strerror(errno));
-    if (!known_format(file))
-        return mu_fail(error, "%s: not a mesh file; must be .obj, .ply, .gltf or .glb", file);
+    if (!check_format(file, error)) return 0;
     mesh->file = strdup(file);
     if (!mesh->file) return mu_fail(error, "%s: not enough memory", file);
     gather.file = import(file);

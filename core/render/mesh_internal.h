@@ -20,4 +20,7 @@ void mu_mesh_corners(const mu_mesh *mesh, uint32_t triangle, mu_dvec3 p[3]);
 /* Computes the normals that are zero: smooth over all triangles that meet at the place, weighted by angle. */
 _Bool mu_mesh_fill_normals(mu_mesh *mesh, mu_error *error);
 
+/* False, with the reason, unless the file is a whole PLY file. */
+_Bool mu_ply_check(const char *file, mu_error *error);
+
 #endif

@@ -281,7 +281,7 @@ static void test_files(void **state) {
         assert_int_equal(chmod(file, 0600), 0);
     }
     assert_int_equal(truncate(file, 100 << 20), 0);
-    expect_refused(file, ": larger than 16 MiB; no document needs that");
+    expect_refused(file, ": larger than 8 MiB; no document needs that");
 
     out = fopen(file, "w");
     assert_non_null(out);

@@ -40,9 +40,8 @@ static const mu_usage usage = {
     "A line that cannot be answered gets {\"id\", \"error\"}; the others go on, and the exit code is 1.\n"
     "\n"
     "example:\n"
-    "  echo '{\"material\": {\"material\": \"musurf.microfacet\", \"ndf\": \"ggx\", \"alpha\": 0.3}, \"wo\": "
-    "[0, 0, 1],\n"
-    "         \"wi\": [1, 0, 1]}' | tr -d '\\n' | musurf eval\n"};
+    "  echo '{\"material\": {\"material\": \"musurf.microfacet\"}, \"wo\": [0, 0, 1], \"wi\": [1, 0, 1]}' | "
+    "musurf eval\n"};
 
 typedef struct evaluation {
     mu_query_cache cache;

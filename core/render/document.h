@@ -31,8 +31,8 @@ typedef struct mu_place {
     json_t *value;                 /* borrowed */
 } mu_place;
 
-/* Parsed, the worst text takes some fifty times its own size in memory; real ones are a few KiB. */
-#define MU_DOCUMENT_LIMIT (16 << 20)
+/* Parsed, the worst text takes some eighty times its own size in memory; real ones are a few KiB. */
+#define MU_DOCUMENT_LIMIT (8 << 20)
 
 /* Reads a file ("-": standard input) of at most MU_DOCUMENT_LIMIT bytes. Duplicate keys, NaN, bytes that are not UTF-8,
  * trailing text and nesting beyond jansson's limit are errors. */

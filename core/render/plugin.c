@@ -55,12 +55,17 @@ const char *mu_plugins_opened(const mu_plugins *plugins, size_t index) {
     return o ? o->file : NULL;
 }
 
-/* The directory of the running program, without the final slash; empty if the system does not tell. */
+/* Takes the last part of a path away, and the slash before it. */
+static void cut_last(char *path) {
+    char *slash = strrchr(path, '/');
+    if (slash) *slash = '\0';
+}
+
+/* The directory of the running program; empty if the system does not tell. */
 static void program_directory(char *out, size_t size) {
     const ssize_t length = readlink("/proc/self/exe", out, size - 1);
     out[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(out, '/');
-    if (slash) *slash = '\0';
+    cut_last(out);
 }
 
 enum { LONGEST_PATH = 4096 };
@@ -80,7 +85,8 @@ static _Bool search_directory(size_t index, char *out, size_t size) {
     if (index > 1) return 0;
     char program[LONGEST_PATH];
     program_directory(program, sizeof program);
-    return snprintf(out, size, index == 0 ? "%s" : "%s/../lib/musurf", program) < (int)size;
+    if (index == 1) cut_last(program);
+    return snprintf(out, size, index == 0 ? "%s" : "%s/lib/musurf", program) < (int)size;
 }
 
 /* A vendor becomes part of a file name, so it holds letters, digits, - and _ only. */

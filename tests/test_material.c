@@ -153,14 +153,14 @@ static void test_jacobian(void **state) {
     expect_error(*state, WITH("{\"map\": \"power_shear\", \"exponent\": 1}"),
                  "f:2:13: $.jacobian.amount: is missing");
     expect_error(*state, WITH("{\"map\": \"power_shear\", \"amount\": 1, \"exponent\": 0.5}"),
-                 "f:2:62: $.jacobian.exponent: is 0.5; a number from 1 to 1000 is needed");
+                 "f:2:61: $.jacobian.exponent: is 0.5; a number from 1 to 1000 is needed");
     expect_error(*state, WITH("{\"map\": \"power_shear\", \"amount\": 1, \"exponent\": 2, \"u\": 1}"),
-                 "f:2:65: $.jacobian.u: this key is not known");
+                 "f:2:64: $.jacobian.u: this key is not known");
     /* A singular constant part stays singular whatever it is multiplied by. */
     expect_error(
         *state,
         WITH("{\"map\": \"power_shear\", \"amount\": 1, \"exponent\": 2}, \"transform\": [[1, 1], [1, 1]]"),
-        "f:2:79: $.transform: ");
+        "f:2:78: $.transform: ");
     expect_error(*state,
                  "{\"material\": \"template.lambert\",\n\"jacobian\": {\"map\": \"power_shear\", \"amount\": "
                  "1, \"exponent\": 2}}",

@@ -57,7 +57,7 @@ class Sample(unittest.TestCase):
             self.assertIs(s["delta"], True)
             for got, expected in zip(s["wi"], [-1 / 3, -2 / 3, 2 / 3]):
                 self.assertAlmostEqual(got, expected, delta=1e-15)
-            self.assertEqual((s["f"], s["pdf"], s["weight"]), ([0, 0, 0], 0, [1, 1, 1]))
+            self.assertEqual((s["f"], s["pdf"], s["weight"]), ([0, 0, 0], 1, [1, 1, 1]))
 
     def test_float(self):
         """Float sampling gives single-precision numbers near those of double."""

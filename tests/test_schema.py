@@ -11,7 +11,7 @@ import unittest
 from command import answers, musurf, strict
 
 # What only a plugin can judge, by parameters together; the schema cannot say it.
-BEYOND_A_SCHEMA = ("musurf_material", "singular", "invertible", "gtr", "alpha", "roughness", "both", "stretch")
+BEYOND_A_SCHEMA = ("not both", "needs both n and k", "is singular", "gtr is defined for alpha in [0, 1]")
 
 
 def valid(schema, value):

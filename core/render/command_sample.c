@@ -33,7 +33,8 @@ static const mu_usage usage = {
     "      \"f\"         [r, g, b] in 1/sr, without the cosine\n"
     "      \"pdf\"       1/sr\n"
     "      \"weight\"    [r, g, b] f cos / pdf, computed without that quotient\n"
-    "      \"delta\"     true where a mirror was sampled: f and pdf are 0, weight is not\n"
+    "      \"delta\"     true where a mirror was sampled: f is 0 and pdf the probability of that mirror, not "
+    "a density\n"
     "The uniforms of line i are Philox4x32-10 of key S at counter i, in float precision cut to 24 bits.\n"};
 
 static void put_sample(mu_json *json, const mu_document *document, const musurf_probe_sample *s) {

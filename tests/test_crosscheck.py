@@ -49,7 +49,8 @@ class Heightfields(unittest.TestCase):
     def test_slopes_are_gaussian(self):
         # <s^4> = 2 alpha^4 for Beckmann; 16 surfaces, their own spread, Student's t at the suite's level 2.45e-6 (15 df: 7.5)
         fourth = [(np.hypot(*heightfield.slopes(heightfield.make(128, 0.4, 8.0, (5, k)))) ** 4).mean() for k in range(16)]
-        modes = np.sum(heightfield.isotropic_spectrum(128, 0.4, 8.0)) ** 2 / np.sum(heightfield.isotropic_spectrum(128, 0.4, 8.0) ** 2)
+        power = heightfield.isotropic_spectrum(128, 0.4, 8.0)
+        modes = np.sum(power) ** 2 / np.sum(power**2)
         allowed = 7.5 * statistics.standard_error(fourth) + 2 * 0.4**4 * 2 * 1.5 / (modes / 2)  # and the modes' finite number
         self.assertLess(abs(np.mean(fourth) - 2 * 0.4**4), allowed)
 
@@ -105,7 +106,8 @@ class PovrayAgainstExactCaster(unittest.TestCase):
     def setUpClass(cls):
         cls.h, _ = heightfield.quantise(heightfield.make(cls.N, 0.5, 5.0, 7))
         # the points of povray.visibility: [i, j, L|U, point]
-        p, q = np.meshgrid((np.arange(2 * cls.FINE) + 0.5) / (2 * cls.FINE), (np.arange(cls.FINE) + 0.5) / cls.FINE, indexing="ij")
+        p, q = np.meshgrid((np.arange(2 * cls.FINE) + 0.5) / (2 * cls.FINE), (np.arange(cls.FINE) + 0.5) / cls.FINE,
+                           indexing="ij")
         i, j = np.meshgrid(np.arange(cls.N), np.arange(cls.N), indexing="ij")
         lower = p + q < 1
         x = np.stack([i[..., None] + p[lower], i[..., None] + p[~lower][::-1]], 2)

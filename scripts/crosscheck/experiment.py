@@ -13,7 +13,8 @@ FINE = 3  # points per facet side: 9 points in every facet, the middle one among
 
 
 class Setup:
-    """What is asked: alpha, size, correlation, seed, realisations (at most PLAIN), views (up to three, untransformed), maps {name: M}, threads."""
+    """What is asked: alpha, size, correlation, seed, realisations (at most PLAIN), views (up to three, untransformed),
+    maps {name: M}, threads."""
 
     def __init__(self, **values):
         self.__dict__.update(values)
@@ -60,27 +61,32 @@ def parallel(setup, jobs):
             raise
 
 
-def measure(setup, surface, m, bits, original):
-    """The numbers of one surface under one M, from its own baked geometry and its own bits."""
+def measure(setup, surface, m, bits, original, first):
+    """The numbers of one surface under one M, from its own baked geometry and its own bits.
+
+    first: the bits of the mesh under the first M, which is the identity unless the setup says otherwise. Against them
+    height_field's own rounding plays no part.
+    """
     slopes = mesh.baked_slopes(surface.h, m)
     directions = [maps.carried(m, v) for v in setup.views]
     kinds = masking.classes(slopes, setup.alpha, m)
     different, total = masking.disagreement(bits, original)
-    return {"different": different, "total": total,
-              "different_facets": masking.disagreement(masking.centre(bits), masking.centre(original))[0],
-              "facets": slopes[0].size,
-              "projected": [masking.projected_mean(b, slopes, w) for b, w in zip(bits, directions)],
-              "facet_mean": [masking.facet_mean(b, slopes, w) for b, w in zip(bits, directions)],
-              "bins": [masking.binned(b, slopes, w, setup.nu(v), smith.edges(setup.nu(v)))
-                       for b, w, v in zip(bits, directions, setup.views)],
-              "joint": [masking.joint(bits, slopes, a, b, directions, kinds) for a, b in setup.pairs]}
+    edges = [smith.edges(setup.nu(v)) for v in setup.views]
+    return {"different": different, "total": total, "different_from_mesh": masking.disagreement(bits, first)[0],
+            "different_facets": masking.disagreement(masking.centre(bits), masking.centre(original))[0],
+            "facets": slopes[0].size,
+            "projected": [masking.projected_mean(b, slopes, w) for b, w in zip(bits, directions)],
+            "facet_mean": [masking.facet_mean(b, slopes, w) for b, w in zip(bits, directions)],
+            "bins": [masking.binned(b, slopes, w, setup.nu(v), e)
+                     for b, w, v, e in zip(bits, directions, setup.views, edges)],
+            "joint": [masking.joint(bits, slopes, a, b, directions, kinds) for a, b in setup.pairs]}
 
 
 def run(setup, folder, steps):
     """Returns {"maps": {name: [numbers per surface]}, "controls": [...], "bits": first surface's bits by name}."""
     with steps.step("heightfields"):
         surfaces = [Surface(setup, k, folder) for k in range(setup.realisations)]
-    identity = np.eye(2)
+    identity, first = np.eye(2), None
     with steps.step("original as POV-Ray's height_field") as entry:
         originals = parallel(setup, [lambda s=s: s.seen(setup, "original", identity, setup.views, FINE, steps, entry, True)
                                      for s in surfaces])
@@ -89,7 +95,9 @@ def run(setup, folder, steps):
         with steps.step(f"baked mesh under {name}") as entry:
             lights = [maps.carried(m, v) for v in setup.views]
             seen = parallel(setup, [lambda s=s: s.seen(setup, name, m, lights, FINE, steps, entry) for s in surfaces])
-            result["maps"][name] = [measure(setup, s, m, b, o) for s, b, o in zip(surfaces, seen, originals)]
+            first = first or seen
+            result["maps"][name] = [measure(setup, s, m, *bits)
+                                    for s, *bits in zip(surfaces, seen, originals, first)]
             result["bits"][name] = seen[0]
     with steps.step("negative controls") as entry:
         result["controls"] = controls(setup, surfaces[0], masking.centre(originals[0]), steps, entry)

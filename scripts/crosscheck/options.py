@@ -9,8 +9,8 @@ import numpy as np
 
 from . import maps
 
-DESCRIPTION = """Cross-checks musurf with POV-Ray: is the masking of a microsurface invariant under linear maps, and does the core's
-prediction hold on an explicit surface? Makes Gaussian (Beckmann) heightfields, renders them and their images under
+DESCRIPTION = """Cross-checks musurf with POV-Ray: is the masking of a microsurface invariant under linear maps, and
+does the core's prediction hold on an explicit surface? Makes Gaussian (Beckmann) heightfields, renders them and their images under
 several M, compares what is seen bit by bit, and G1, G2, sigma and D with `musurf eval`. Verdicts on stdout; numbers,
 pictures and an HTML fragment in the output folder. Exit 0: all agree, or differ as Smith's model is known to; 1: a check
 failed, or POV-Ray or musurf is missing; 2: usage."""
@@ -57,10 +57,12 @@ def bounded(kind, low, high):
 
 
 def parse(arguments, build):
-    p = argparse.ArgumentParser("scripts/validate", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser("scripts/validate", description=DESCRIPTION,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--quick", action="store_true", help="Gaussian surfaces of 256 x 256 cells; what is done anyway")
     p.add_argument("--full", action="store_true", help=argparse.SUPPRESS)
-    p.add_argument("-o", metavar="DIR", dest="output", default=os.path.join(build, "validate"), help="output folder (%(default)s)")
+    p.add_argument("-o", metavar="DIR", dest="output", default=os.path.join(build, "validate"),
+                   help="output folder (%(default)s)")
     p.add_argument("--json", action="store_true", help="validate.json on stdout instead of verdict lines")
     p.add_argument("--seed", type=bounded(int, 0, 2**31), default=2022, help="of surfaces and the random M (%(default)s)")
     p.add_argument("--alpha", type=bounded(float, 0.05, 0.8), default=0.5, help="Beckmann roughness (%(default)s)")
@@ -70,7 +72,8 @@ def parse(arguments, build):
                    help="one more M, its rows [a c] and [b d]; may be repeated")
     p.add_argument("--view", metavar="x,y,z", type=view, action="append", default=[],
                    help="views of the original instead of 60, 75 and 85 degrees; up to three")
-    p.add_argument("--threads", type=bounded(int, 1, 256), default=os.cpu_count() or 1, help="POV-Ray processes at a time (%(default)s)")
+    p.add_argument("--threads", type=bounded(int, 1, 256), default=os.cpu_count() or 1,
+                   help="POV-Ray processes at a time (%(default)s)")
     p.add_argument("--plugin-path", metavar="DIR", help="where musurf looks for material plugins (MUSURF_PLUGIN_PATH)")
     options = p.parse_args(arguments)
     if options.full:

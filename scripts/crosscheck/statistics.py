@@ -40,7 +40,8 @@ def dependence(both, a, b, every):
 
 def small_sample(count):
     """Mean of a sample's standard deviation over the true one, for normal values."""
-    return float(mpmath.sqrt(2 / mpmath.mpf(count - 1)) * mpmath.gamma(mpmath.mpf(count) / 2) / mpmath.gamma((mpmath.mpf(count) - 1) / 2))
+    count = mpmath.mpf(count)
+    return float(mpmath.sqrt(2 / (count - 1)) * mpmath.gamma(count / 2) / mpmath.gamma((count - 1) / 2))
 
 
 @functools.cache

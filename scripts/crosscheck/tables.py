@@ -14,19 +14,20 @@ EXPLAIN = {
     "control": "The same comparison with the light in a wrong direction. It must fail by at least 1e-2 of the bits, or the "
                "masking check would prove nothing.",
     "G1 projected mean": "Visible over facing projected area, measured in POV-Ray, against the core's G1. For every "
-               "periodic heightfield this is the identity cos/sigma, so it tests D, sigma and the use of M (Eq. 12), not Smith's "
-               "assumption. Tolerance: Student's t of block errors at a family-wise level of 0.01, plus 1e-3 for 9 points per facet.",
+               "periodic heightfield this is the identity cos/sigma, so it tests D, sigma and the use of M (Eq. 12), not "
+               "Smith's assumption. Tolerance: Student's t of block errors at a family-wise level of 0.01, plus 1e-3 for 9 points per facet.",
     "sigma": "Projected area of the facing facets per unit macro area at Mv, over 16 surfaces, against the core's sigma.",
     "D of normals": "Normals of the transformed facets of 16 surfaces against the core's D_M (Eq. 22) integrated over polar "
                "bins of slope: total variation. Tolerance: what the bins' standard errors make by chance, plus four standard "
                "deviations. No facet is fitted; only the slopes' covariance is fixed.",
     "G1 per slope": "Average visibility of the facets whose slope along the view, over alpha, lies in a bin. Smith gives one "
                "value to all; Gaussian surfaces do not. The known deviation was measured beforehand by an exact caster.",
-    "G2 / (G1 G1)": "Being seen by both over what independence predicts, for facets of like normals. The core's height-correlated "
-               "G2 must lie between independence and the measurement, be symmetric, and not exceed the smaller G1.",
+    "G2 / (G1 G1)": "Being seen by both over what independence predicts, for facets of like normals. The core's "
+               "height-correlated G2 must lie between independence and the measurement, be symmetric, and not exceed the smaller G1.",
 }
 COLUMNS = (("map", "M"), ("view", "view of the original"), ("lit_from", "lit from"), ("bin", "bin"), ("low", "slope from"),
-           ("high", "to"), ("different", "differing bits"), ("total", "of"), ("different_facets", "facets"), ("share", "share"),
+           ("high", "to"), ("different", "differing bits"), ("total", "of"), ("different_from_mesh", "from the untransformed mesh"),
+           ("different_facets", "facets"), ("share", "share"),
            ("measured", "measured"), ("standard_error", "standard error"), ("predicted", "core"), ("deviation", "deviation"),
            ("facet_mean", "facet mean"), ("facet_error", "its error"), ("chance", "chance"), ("known", "known deviation"),
            ("tolerance", "tolerance"), ("chance_mean", "expected by chance"), ("rms", "rms per bin"), ("verdict", "verdict"))
@@ -58,14 +59,17 @@ def lines(rows):
             group = [r for r in rows if r["check"] == check and r["map"] == name]
             if check in ("masking", "control"):
                 extreme = (max if check == "masking" else min)(group, key=lambda r: r["share"])
-                words = f"{'most' if check == 'masking' else 'fewest'} {extreme['different']} of {extreme['total']} bits differ " \
-                        f"({extreme['share']:.1e}; {'at most' if check == 'masking' else 'at least'} {extreme['tolerance']:.0e})"
+                most, limit = ("most", "at most") if check == "masking" else ("fewest", "at least")
+                words = f"{most} {extreme['different']} of {extreme['total']} bits differ " \
+                        f"({extreme['share']:.1e}; {limit} {extreme['tolerance']:.0e})"
             elif check == "D of normals":
-                words = f"total variation {group[0]['measured']:.4f} (by chance {group[0]['chance_mean']:.4f}, at most {group[0]['tolerance']:.4f})"
+                only = group[0]
+                words = f"total variation {only['measured']:.4f} (by chance {only['chance_mean']:.4f}, " \
+                        f"at most {only['tolerance']:.4f})"
             else:
                 extreme = max(group, key=lambda r: abs(r["deviation"]))
-                words = f"largest deviation {extreme['deviation']:+.2%} ({extreme['measured']:.4f} +- {extreme['standard_error']:.4f}, " \
-                        f"core {extreme['predicted']:.4f}) at {extreme['view']}"
+                words = f"largest deviation {extreme['deviation']:+.2%} ({extreme['measured']:.4f} +- " \
+                        f"{extreme['standard_error']:.4f}, core {extreme['predicted']:.4f}) at {extreme['view']}"
             yield f"{worst(group):29} {check + ', ' + name:34} {words}"
 
 
@@ -77,7 +81,9 @@ def cell(key, value):
     if isinstance(value, float):
         if math.isinf(value):
             return "−∞" if value < 0 else "∞"
-        return f"{value:+.2%}" if key in PERCENT else f"{value:.3g}" if abs(value) < 1e-3 or key in ("low", "high") else f"{value:.4f}"
+        if key in PERCENT:
+            return f"{value:+.2%}"
+        return f"{value:.3g}" if abs(value) < 1e-3 or key in ("low", "high") else f"{value:.4f}"
     return html.escape(str(value))
 
 

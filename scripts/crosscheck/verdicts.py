@@ -37,9 +37,10 @@ def masking(setup, measured):
     for name, surfaces in measured["maps"].items():
         for k, view in enumerate(setup.views):
             different, total = sum(int(s["different"][k]) for s in surfaces), sum(s["total"] for s in surfaces)
+            from_mesh = sum(int(s["different_from_mesh"][k]) for s in surfaces)
             facets = sum(int(s["different_facets"][k]) for s in surfaces), sum(s["facets"] for s in surfaces)
             rows.append(row("masking", name, label(view), AGREES if different <= MASKING_LIMIT * total else FAILS,
-                            different=different, total=total, different_facets=facets[0], facets=facets[1],
+                            different=different, total=total, different_from_mesh=from_mesh, different_facets=facets[0], facets=facets[1],
                             share=different / total, tolerance=MASKING_LIMIT))
     return rows
 

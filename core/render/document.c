@@ -160,7 +160,7 @@ static char *read_all(int file, size_t expected, const char *name, size_t *lengt
         }
         *length += (size_t)got;
         if (*length > MU_DOCUMENT_LIMIT) {
-            mu_fail(error, "%s: larger than %d MiB; no document needs that", name, MU_DOCUMENT_LIMIT >> 20);
+            mu_fail(error, "%s:1:1: $: larger than %d MiB; no document needs that", name, MU_DOCUMENT_LIMIT >> 20);
             break;
         }
         if (*length == room) {
@@ -192,7 +192,7 @@ _Bool mu_document_read(mu_document *document, const char *file, mu_error *error)
     if (S_ISDIR(status.st_mode))
         mu_fail(error, "%s: is a directory; a JSON file is needed", name);
     else if (S_ISREG(status.st_mode) && status.st_size > MU_DOCUMENT_LIMIT)
-        mu_fail(error, "%s: larger than %d MiB; no document needs that", name, MU_DOCUMENT_LIMIT >> 20);
+        mu_fail(error, "%s:1:1: $: larger than %d MiB; no document needs that", name, MU_DOCUMENT_LIMIT >> 20);
     else
         text =
             read_all(descriptor, S_ISREG(status.st_mode) ? (size_t)status.st_size : 0, name, &length, error);

@@ -84,7 +84,10 @@ static _Bool build(mu_lights *lights, const mu_scene *scene, mu_error *error) {
             mu_rectangle_light_make(&lights->rectangles[i], light);
         else if (light->kind != MU_DIRECTIONAL)
             lights->around = i;
-        if (light->kind == MU_ENVIRONMENT && !mu_sky_make_environment(&lights->sky, light, error)) return 0;
+        mu_error reason = {""};
+        if (light->kind == MU_ENVIRONMENT && !mu_sky_make_environment(&lights->sky, light, &reason))
+            return mu_fail(error, "%s%s%s", light->place ? light->place : "", light->place ? ": " : "",
+                           reason.text);
         if (light->kind == MU_STUDIO && !mu_sky_make_studio(&lights->sky, light, error)) return 0;
     }
     return make_choice(lights, middle_of_objects(scene), error);

@@ -61,7 +61,10 @@ void mu_scene_free(mu_scene *scene) {
         free(scene->materials[i].name);
     }
     for (uint32_t i = 0; i < scene->mesh_count; ++i) mu_mesh_free(&scene->meshes[i]);
-    for (uint32_t i = 0; i < scene->light_count; ++i) free(scene->lights[i].image);
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        free(scene->lights[i].image);
+        free(scene->lights[i].place);
+    }
     mu_plugins_free(scene->plugins);
     free(scene->materials);
     free(scene->meshes);

@@ -76,6 +76,7 @@ typedef struct mu_object {
 typedef struct mu_light {
     enum { MU_ENVIRONMENT, MU_CONSTANT, MU_STUDIO, MU_DIRECTIONAL, MU_RECTANGLE_LIGHT } kind;
     char *image;        /* MU_ENVIRONMENT: resolved path of a latitude-longitude image; +z is up */
+    char *place;        /* MU_ENVIRONMENT: "scene.json:12:20: $.lights[0].image", for messages about the image */
     float rotation;     /* MU_ENVIRONMENT, MU_STUDIO: radians about +z, counter-clockwise */
     float scale[3];     /* multiplies radiance; of MU_CONSTANT it is the radiance; MU_RECTANGLE_LIGHT: radiance */
     mu_vec3 direction;  /* MU_DIRECTIONAL: toward the light, unit */

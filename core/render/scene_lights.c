@@ -34,7 +34,8 @@ static _Bool read_image(mu_reader *reader, const mu_place *place, mu_light *ligh
     if (fallback.value && !mu_place_choice(&fallback, fallbacks, &choice, reader->error)) return 0;
     if (!mu_place_string(&image, &name, reader->error)) return 0;
     light->image = mu_scene_path(reader, name);
-    if (!light->image) return mu_fail(reader->error, "not enough memory for the scene");
+    light->place = mu_place_text(&image);
+    if (!light->image || !light->place) return mu_fail(reader->error, "not enough memory for the scene");
     if (!access(light->image, R_OK)) return 1;
     if (!fallback.value || errno != ENOENT)
         return mu_place_fail(&image, reader->error, "%.500s: %s", light->image, strerror(errno));
@@ -118,6 +119,7 @@ _Bool mu_read_lights(mu_reader *reader) {
         mu_light light = {0};
         if (!read_light(reader, &element, &light, reader->scene->light_count) || !append(reader, &light)) {
             free(light.image);
+            free(light.place);
             return 0;
         }
         if (surrounds(&light) && surrounded)

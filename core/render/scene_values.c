@@ -89,6 +89,14 @@ _Bool mu_fail_unknown(const mu_place *place, json_t *table, const char *what, mu
     return 0;
 }
 
+char *mu_place_text(const mu_place *place) {
+    mu_error line = {""};
+    mu_place_fail(place, &line, "%s", "");
+    char *end = line.text + strlen(line.text);
+    while (end > line.text && (end[-1] == ' ' || end[-1] == ':')) --end;
+    return strndup(line.text, (size_t)(end - line.text));
+}
+
 void mu_scene_warn(const mu_place *place, const char *text) {
     mu_error line = {""};
     mu_place_fail(place, &line, "%s", text);

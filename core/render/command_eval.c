@@ -52,15 +52,17 @@ typedef struct evaluation {
     int output_failure; /* errno of the write that failed */
 } evaluation;
 
-static _Bool all_finite(const musurf_probe_values *v) {
-    const double sum = v->sigma + v->D + v->G1 + v->Dv + v->G2 + v->pdf + v->f[0] + v->f[1] + v->f[2] +
-                       v->F[0] + v->F[1] + v->F[2];
-    if (isfinite(sum)) return 1;
-    const double each[] = {v->sigma, v->D,    v->G1,   v->Dv,   v->G2,   v->pdf,
-                           v->f[0],  v->f[1], v->f[2], v->F[0], v->F[1], v->F[2]};
+/* The first quantity that JSON cannot say, or NULL; Lambda alone may be infinite. */
+static const char *not_finite(const musurf_probe_values *v) {
+    const struct {
+        const char *name;
+        double value;
+    } each[] = {{"sigma", v->sigma}, {"D", v->D},     {"G1", v->G1},  {"Dv", v->Dv},
+                {"G2", v->G2},       {"pdf", v->pdf}, {"f", v->f[0]}, {"f", v->f[1]},
+                {"f", v->f[2]},      {"F", v->F[0]},  {"F", v->F[1]}, {"F", v->F[2]}};
     for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
-        if (!isfinite(each[i])) return 0;
-    return !isnan(v->Lambda);
+        if (!isfinite(each[i].value)) return each[i].name;
+    return isnan(v->Lambda) ? "Lambda" : NULL;
 }
 
 static _Bool answer(evaluation *e, const mu_document *document, mu_error *error) {
@@ -81,8 +83,10 @@ static _Bool answer(evaluation *e, const mu_document *document, mu_error *error)
     const musurf_result result = probed.probe->evaluate(
         probed.compiled, e->precision, wo, wm_place.value ? wm : NULL, wi_place.value ? wi : NULL, &v);
     if (result != MUSURF_OK) return mu_query_fail(&root, &probed, result, error);
-    if (!all_finite(&v))
-        return mu_place_fail(&root, error, "%s answered with a number that is not finite", probed.type);
+    const char *const beyond = not_finite(&v);
+    if (beyond)
+        return mu_place_fail(&root, error, "%s has no finite %s for this material and these directions",
+                             probed.type, beyond);
 
     mu_json *const json = &e->json;
     mu_json_begin(json);

@@ -14,3 +14,8 @@ $(TEST_PROGRAMS) $(BENCHMARKS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(TEST_
 
 run-test: all $(TEST_PROGRAMS)
 	@BUILD=$(BUILD) $(PYTHON) tests/run $(ONLY)
+
+# Speed, as ratios measured in one run; one that falls short of its goal fails.
+bench: all $(BENCHMARKS)
+	@for program in $(BENCHMARKS); do BUILD=$(BUILD) $$program || exit 1; done
+	@BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py

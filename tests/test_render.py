@@ -287,13 +287,17 @@ class Render(unittest.TestCase):
         self.assertNotIn("OpenImageIO", opened)
         if "libasan" in opened or "libtsan" in opened:
             self.skipTest("the start of an instrumented program says nothing")
-        times = []
+        walls, busy = [], []
         for _ in range(20):
-            start = time.monotonic()
+            before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
             self.run_it(*arguments)
-            times.append(time.monotonic() - start)
-        print(f"start to end of an 8 x 8 render: {1000 * min(times):.1f} ms")
-        self.assertLess(min(times), 0.020)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            walls.append(time.monotonic() - start)
+            busy.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        print(f"an 8 x 8 render from start to end: {1000 * min(walls):.1f} ms, {1000 * min(busy):.1f} ms of processor")
+        # The clock also measures what else the machine does; on an idle one it shows the same. Loading OpenImageIO
+        # alone takes 400 ms of processor.
+        self.assertLess(min(busy), 0.020)
 
 
 if __name__ == "__main__":

@@ -120,6 +120,12 @@ uint32_t mu_lights_choices(const mu_lights *lights) {
     return lights->choices;
 }
 
+_Bool mu_lights_met(const mu_lights *lights) {
+    for (uint32_t i = 0; i < lights->count; i++)
+        if (lights->lights[i].kind != MU_DIRECTIONAL) return 1;
+    return 0;
+}
+
 size_t mu_lights_table_bytes(const mu_lights *lights) {
     const size_t width = lights->sky.table.width, height = lights->sky.table.height;
     if (!height) return 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* light.h: light arriving at a point: sampled, evaluated, and its density for multiple importance sampling. */
+/* light.h: light arriving at a point: sampled, evaluated, and its density for multiple importance sampling.
+ */
 #ifndef MU_LIGHT_H
 #define MU_LIGHT_H
 
@@ -16,13 +17,16 @@ typedef struct mu_light_sample {
     _Bool delta;
 } mu_light_sample;
 
-/* Loads the environment image (through the module that holds OpenImageIO, only if there is one) and builds its
- * sampling tables. NULL on failure. */
+/* Loads the environment image (through the module that holds OpenImageIO, only if there is one) and builds
+ * its sampling tables. NULL on failure. */
 mu_lights *mu_lights_build(const mu_scene *scene, mu_error *error);
 void mu_lights_free(mu_lights *lights);
 
-/* [any] How many lights mu_lights_sample chooses among: with 0 it has nothing to sample, with 1 it ignores u[2]. */
+/* [any] How many lights mu_lights_sample chooses among: with 0 it has nothing to sample, with 1 it ignores
+ * u[2]. */
 uint32_t mu_lights_choices(const mu_lights *lights);
+/* [any] Whether a ray may find light at all: not if all lights are directional. */
+_Bool mu_lights_met(const mu_lights *lights);
 /* What was built: the sampling table of the environment or studio, and the environment's pixels. */
 size_t mu_lights_table_bytes(const mu_lights *lights);
 size_t mu_lights_image_bytes(const mu_lights *lights);

@@ -4,7 +4,8 @@
  * path.c: the path tracer. One closure lives at a time, in the thread's scratch; nothing is allocated.
  *
  * Rectangle lights end a path: they emit and do not scatter. A path of `depth` scattering events is followed
- * by one more ray that may still find light, so that both strategies see the same paths.
+ * by one more ray that may still find light, so that both strategies see the same paths; where no light can
+ * be met, that ray is left out.
  */
 #include <float.h>
 
@@ -114,6 +115,7 @@ void mu_path_trace(const mu_tracer *tracer, const mu_path_options *options, mu_r
                    void *scratch, mu_radiance *out) {
     const mu_scene *scene = tracer->scene;
     const uint32_t choices = mu_lights_choices(tracer->lights);
+    const _Bool met = mu_lights_met(tracer->lights);
     float throughput[3] = {1, 1, 1}, radiance[3], light_pdf;
     mu_arrival arrival = {ray.origin, 0, 1};
     for (uint32_t event = 0;; event++) {
@@ -151,6 +153,7 @@ void mu_path_trace(const mu_tracer *tracer, const mu_path_options *options, mu_r
         random->dimension = CAMERA_DRAWS + event * EVENT_DRAWS;
         if (choices && (shading.lobes & ~(uint32_t)MUSURF_DELTA_LOBES))
             sample_light(tracer, options, choices, &shading, throughput, random, out);
+        if (event + 1 == scene->integrator.depth && !met) return;
         random->dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
         if (!scatter(&shading, random, throughput, &ray, &arrival, out)) return;
         if (event + 1 >= scene->integrator.roulette && !survives(random, throughput)) return;

@@ -19,7 +19,7 @@ typedef struct mu_state {
     double start, worked;          /* when this run began; how long its threads worked */
     double reported, checkpointed; /* when that happened last */
     double interval;               /* between checkpoints */
-    double noise;                  /* at the last pass, or negative */
+    double noise, measured;        /* at the last pass that was asked, or negative; when */
     uint64_t before;               /* samples of the whole film before this run */
     uint32_t least, most;
 } mu_state;
@@ -133,12 +133,19 @@ static uint32_t next_target(mu_state *state) {
     return state->least >= plan->samples ? 0 : target < plan->samples ? target : plan->samples;
 }
 
+/* The noise costs a walk over the film: after every pass if a rule needs it, else twice a second for the
+ * watcher. */
+static void measure_noise(mu_state *state) {
+    const _Bool wanted = state->watch->report && (state->noise < 0 || now() - state->measured > 0.5);
+    if (state->least < state->most || !(state->plan->noise > 0 || wanted)) return;
+    state->noise = mu_film_noise(state->film);
+    state->measured = now();
+}
+
 static mu_render_end run(mu_state *state, mu_error *error) {
     for (;;) {
-        mu_film_samples(state->film, &state->least, &state->most);
-        if (state->least == state->most && (state->plan->noise > 0 || state->watch->report))
-            state->noise = mu_film_noise(state->film);
-        if (state->reported < now() - 0.1) report(state, state->worked);
+        measure_noise(state);
+        if (now() - state->reported > 0.1) report(state, state->worked);
         if (told_to_stop(state)) return MU_RENDER_STOPPED;
         if (checkpoint_due(state)) checkpoint(state);
         const uint32_t target = next_target(state);
@@ -149,6 +156,7 @@ static mu_render_end run(mu_state *state, mu_error *error) {
             end = sitting(state, target, error);
         }
         if (end != MU_RENDER_DONE) return end;
+        state->least = state->most = target;
     }
 }
 

@@ -14,6 +14,7 @@
 typedef struct mu_soft_box {
     mu_vec3 middle, right, up; /* orthonormal: right is towards rising azimuth */
     float half[2], edge;
+    float least; /* cosine to the middle, below that of the farthest corner */
     float radiance[3];
 } mu_soft_box;
 
@@ -25,6 +26,7 @@ static const mu_soft_box boxes[] = {
      {-0.47768429f, -0.56928196f, 0.66913061f},
      {0.50f, 0.32f},
      0.10f,
+     0.80f,
      {9.0f, 8.6f, 8.0f}},
     /* fill: wide, dim, cool, a = 165, e = 22 */
     {{-0.89559083f, 0.23997284f, 0.37460659f},
@@ -32,6 +34,7 @@ static const mu_soft_box boxes[] = {
      {0.36184218f, -0.09695532f, 0.92718385f},
      {0.55f, 0.38f},
      0.18f,
+     0.73f,
      {1.5f, 1.7f, 2.0f}},
     /* strip: tall, narrow and bright, a = -70, e = 25 */
     {{0.30997552f, -0.85165074f, 0.42261826f},
@@ -39,6 +42,7 @@ static const mu_soft_box boxes[] = {
      {-0.14454396f, 0.39713126f, 0.90630779f},
      {0.09f, 0.75f},
      0.05f,
+     0.77f,
      {14.0f, 14.0f, 14.5f}},
     /* second strip, behind, a = -125, e = 35 */
     {{-0.46984631f, -0.67101007f, 0.57357644f},
@@ -46,6 +50,7 @@ static const mu_soft_box boxes[] = {
      {0.32898993f, 0.46984631f, 0.81915204f},
      {0.06f, 0.60f},
      0.04f,
+     0.83f,
      {10.0f, 9.6f, 9.0f}},
     /* overhead: broad, a = 0, e = 85 */
     {{0.08715574f, 0, 0.99619470f},
@@ -53,6 +58,7 @@ static const mu_soft_box boxes[] = {
      {-0.99619470f, 0, 0.08715574f},
      {0.45f, 0.28f},
      0.15f,
+     0.80f,
      {3.6f, 3.7f, 3.9f}},
 };
 
@@ -73,7 +79,7 @@ void mu_studio_radiance(mu_vec3 direction, float radiance[3]) {
     }
     for (const mu_soft_box *box = boxes; box < boxes + sizeof boxes / sizeof boxes[0]; box++) {
         const float ahead = mu_dot(direction, box->middle);
-        if (ahead <= 0.2f) continue; /* no box reaches further than 78 degrees from its middle */
+        if (ahead <= box->least) continue;
         const float x = mu_dot(direction, box->right) / ahead, y = mu_dot(direction, box->up) / ahead;
         const float cover =
             fade(box->half[0] - fabsf(x), box->edge) * fade(box->half[1] - fabsf(y), box->edge);

@@ -67,8 +67,11 @@ static void integrate_cells(mu_cells *cells, density_context *d, double mean) {
                              .rule = MU_KRONROD_7};
     for (size_t row = 0; row < ROWS; row++)
         for (size_t c = 0; c < cells->count[row]; c++) {
+            /* A wide cell starts from panels of 4 in t, so that no peak hides between the nodes. */
+            const double *x = &cells->edge[row][c], reach = -log(cells->region.far) - cells->region.low;
+            const size_t columns = 1 + (size_t)((x[1] - x[0]) * reach / 4);
             const double y[2] = {2. * (double)row / ROWS, 2. * (double)(row + 1) / ROWS};
-            const mu_integral cell = mu_integrate(&q, &cells->edge[row][c], 1, y, 1);
+            const mu_integral cell = mu_integrate(&q, x, columns, y, 1);
             cells->probability[row][c] = cell.value[0];
             cells->total += cell.value[0];
             cells->error = fmax(cells->error, cell.panels ? cell.error[0] / mean : INFINITY);

@@ -11,8 +11,8 @@
 
 typedef enum map_kind {
     MAP_NONE,
+    MAP_STRETCH, /* the first ggx: the classic anisotropy */
     MAP_GENERAL,
-    MAP_STRETCH,
     MAP_SKEW,
     MAP_ROTATION,
     MAP_NEARLY_SINGULAR,

@@ -92,7 +92,7 @@ static mu_integral integrate(integral_context *c, const mu_check_effort *effort,
                              .target = {target, target, target, 0},
                              .panel_limit = effort->panels,
                              .rule = MU_KRONROD_15};
-    return mu_integrate(&q, (const double[2]){0, 1}, 8, (const double[2]){0, 2}, 4);
+    return mu_integrate(&q, (const double[2]){0, 1}, 6, (const double[2]){0, 2}, 4);
 }
 
 static void judge(integral_context *c, mu_law law, const mu_integral *integral, size_t part, double rounding,
@@ -108,7 +108,8 @@ static void judge(integral_context *c, mu_law law, const mu_integral *integral, 
 
 static void judge_refusals(integral_context *c, _Bool normals, mu_tally *tally) {
     const double *where = c->refused_at;
-    const mu_case at = {c->subject, c->view, normals ? where : NULL, normals ? NULL : where};
+    const double *wm = c->refused && normals ? where : NULL, *wi = c->refused && !normals ? where : NULL;
+    const mu_case at = {c->subject, c->view, wm, wi};
     mu_tally_error(tally, MU_LAW_RANGE, c->refused ? NAN : 0, 1, at);
 }
 

@@ -90,7 +90,7 @@ _Bool mu_plane_from_slopes(mu_plane *plane, const double *slopes, int count, dou
 }
 
 /* 1/r at the region's edge in direction psi. Ends of the plane and of the region are joined smoothly: where
- * they meet, the strip that is lost lies e^-37 beyond everything. */
+ * they meet, the strip that is lost lies e^-30 beyond everything. */
 static double edge(const mu_region *region, double psi) {
     const double u = cos(psi);
     if (region->kind == MU_VISIBLE_SLOPES) return region->far + fmax(0, u) * region->slant;
@@ -116,10 +116,10 @@ mu_region mu_region_make(const mu_plane *plane, mu_region_kind kind, const doubl
         region.axis[0] = kx / region.slant;
         region.axis[1] = ky / region.slant;
     }
-    region.far = exp(-37 - plane->spread);
+    region.far = exp(-30 - plane->spread);
     double nearest = 0;
     for (int i = 0; i < 64; i++) nearest = fmax(nearest, edge(&region, HALF_PI * i / 16));
-    region.low = fmin(-23, -log(nearest) - 30);
+    region.low = fmin(-16, -log(nearest) - 25);
     return region;
 }
 

@@ -11,7 +11,7 @@
  *
  * A region is a part of the plane that is star-shaped about the origin: the whole plane; the slopes visible
  * from v; the slopes that reflect v upwards. It is mapped to the rectangle y in [0,2], x in [0,1]: y to psi
- * (measured from the direction of A^T v_xy), x to t between a lower end, below which lies less than e^-46 of
+ * (measured from the direction of A^T v_xy), x to t between a lower end, below which lies less than e^-32 of
  * a disc of size one, and the region's own edge at that psi; so that integrands have no edge inside the
  * rectangle.
  */
@@ -43,7 +43,7 @@ typedef struct mu_region {
     double axis[2]; /* unit: psi = 0 in the s plane */
     double slant;   /* |A^T v_xy| / v_z */
     double low;     /* of t */
-    double far;     /* 1/r where the plane counts as ended: e^-37 of the spread */
+    double far;     /* 1/r where the plane counts as ended: e^-30 beyond the spread */
 } mu_region;
 
 mu_region mu_region_make(const mu_plane *plane, mu_region_kind kind, const double view[3]);

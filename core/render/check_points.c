@@ -24,9 +24,7 @@ static double dot(const double a[3], const double b[3]) {
 }
 
 static void equal(const point *p, mu_law law, double a, double b, double slack) {
-    const double size = fmax(fabs(a), fabs(b));
-    const double tolerance = p->accuracy * size + slack;
-    mu_tally_error(p->tally, law, size > 0 ? a - b : 0, size > 0 ? tolerance : 1, p->at);
+    mu_tally_equal(p->tally, law, a, b, p->accuracy, slack, p->at);
 }
 
 static void at_most(const point *p, mu_law law, double value, double bound) {
@@ -97,7 +95,7 @@ static void check_brdf(const point *p, const double wo[3], const double wi[3]) {
     at_most(p, MU_LAW_RANGE, pair.G2, fmin(o.G1, i.G1));
     for (int c = 0; c < 3; c++) {
         const double slack = pair.f[1] > 0 ? rounded.slack[MU_AT_F] * pair.f[c] / pair.f[1] : 0;
-        equal(p, MU_LAW_BRDF, pair.f[c], pair.F[c] * o.D * pair.G2 / (4 * wo[2] * wi[2]), slack);
+        equal(p, MU_LAW_BRDF, pair.F[c] * o.D * pair.G2 / (4 * wo[2] * wi[2]), pair.f[c], slack);
         at_most(p, MU_LAW_RANGE, pair.F[c], 1);
     }
 }

@@ -12,9 +12,7 @@
 
 static void compare(mu_tally *tally, mu_law law, const mu_subject *subject, double a, double b, double slack,
                     mu_case at) {
-    const double size = fmax(fabs(a), fabs(b));
-    mu_tally_error(tally, law, size > 0 ? a - b : 0,
-                   size > 0 ? mu_subject_accuracy(subject) * size + slack : 1, at);
+    mu_tally_equal(tally, law, a, b, mu_subject_accuracy(subject), slack, at);
 }
 
 static _Bool sample(const mu_subject *subject, musurf_sampler sampler, const double view[3],

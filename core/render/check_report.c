@@ -62,10 +62,9 @@ void mu_check_print_table(const mu_check_report *report, FILE *out) {
         if (report->tally->row[law].count && (!mu_law_is_statistical(law) || !passes(report, law)))
             fprintf(out, "%s\n%s\n", mu_law_title(law), report->tally->row[law].where);
     if (unresolved)
-        fprintf(
-            out,
-            "\nbeyond reach: rounding of the directions alone moves the result by more than the test may; "
-            "the first of each\n");
+        fprintf(out, "\nbeyond reach: rounding of the directions alone, or quadrature, leaves more doubt "
+                     "than the test may; "
+                     "the first of each\n");
     for (mu_law law = 0; law < MU_LAW_COUNT; law++)
         if (report->tally->row[law].unresolved)
             fprintf(out, "%s\n%s\n", mu_law_title(law), report->tally->row[law].unresolved_at);

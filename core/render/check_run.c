@@ -33,8 +33,10 @@ static void check_alone(const run *r, uint64_t index, const mu_subject *subject,
                      &random, view);
         mu_check_visible(subject, effort, view, tally);
         const mu_reflected reflected = mu_check_reflected(subject, effort, view, tally);
-        if (k == 0 || subject->sampler == MUSURF_SAMPLE_NDF)
-            mu_check_sampler(subject, effort, MUSURF_SAMPLE_NDF, view, &reflected, &random, tally);
+        static const double up[3] = {0, 0, 1};
+        if (subject->sampler == MUSURF_SAMPLE_NDF || k == 0)
+            mu_check_sampler(subject, effort, MUSURF_SAMPLE_NDF,
+                             subject->sampler == MUSURF_SAMPLE_NDF ? view : up, &reflected, &random, tally);
         mu_check_sampler(subject, effort, MUSURF_SAMPLE_VISIBLE, view, &reflected, &random, tally);
         mu_check_points(subject, effort, view, &random, tally);
         mu_check_shading(subject, effort, view, &random, tally);

@@ -14,14 +14,23 @@
 #include "core/render/check_tests.h"
 
 typedef struct density_of {
-    const mu_subject *subject;
+    mu_subject subject;
     const double *view;
     int quantity;
 } density_of;
 
+/* Expected counts need four digits: float gives them at a hundredth of the cost, as long as the rounding of
+ * slopes to float does not blur the distribution. That float and double agree is tested at points
+ * (check_shading.c). */
+static density_of density_make(const mu_subject *subject, const double view[3], int quantity) {
+    density_of density = {*subject, view, quantity};
+    if (subject->type && subject->plane.condition * 0x1p-24 < 1e-5) density.subject.precision = MUSURF_FLOAT;
+    return density;
+}
+
 static double slope_density(void *context, const double m[3]) {
     const density_of *d = context;
-    const mu_answer a = mu_subject_ask(d->subject, d->view, m, NULL);
+    const mu_answer a = mu_subject_ask(&d->subject, d->view, m, NULL);
     const double dm = m[2] * m[2] * m[2];
     if (!(dm > 0)) return 0; /* beyond e^37: nothing is there */
     return a.value[d->quantity] * dm * (d->quantity == MU_AT_D ? m[2] : 1);
@@ -76,7 +85,7 @@ static void draw_shading(const mu_subject *subject, const mu_check_effort *effor
     } else {
         const float wo[3] = {(float)view[0], (float)view[1], (float)view[2]};
         const _Bool lit = subject->type->setup(subject->material, wo, NULL, 0, closure) != 0;
-        for (size_t n = 0; lit && n < effort->samples; n++) {
+        for (size_t n = 0; lit && n < effort->shading_samples; n++) {
             const float u[3] = {mu_stream_float(random), mu_stream_float(random), mu_stream_float(random)};
             musurf_sample s;
             subject->type->sample(closure, u, MUSURF_ALL_LOBES, &s);
@@ -114,12 +123,14 @@ static void judge_own(const mu_subject *subject, double samples, const double vi
 void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, musurf_sampler sampler,
                       const double view[3], const mu_reflected *reflected, mu_stream *random,
                       mu_tally *tally) {
-    const _Bool visible = sampler == MUSURF_SAMPLE_VISIBLE;
+    static const double up[3] = {0, 0, 1};
+    const _Bool visible = sampler == MUSURF_SAMPLE_VISIBLE, own = sampler == subject->sampler;
     const mu_law law = visible ? MU_LAW_VISIBLE_SAMPLER : MU_LAW_NDF_SAMPLER;
     const mu_case at = {subject, view, NULL, NULL};
     const mu_region region =
         mu_region_make(&subject->plane, visible ? MU_VISIBLE_SLOPES : MU_WHOLE_PLANE, view);
-    density_of density = {subject, view, visible ? MU_AT_DV : MU_AT_D};
+    /* D does not depend on the view: at the normal, masking costs nothing. */
+    density_of density = visible ? density_make(subject, view, MU_AT_DV) : density_make(subject, up, MU_AT_D);
     mu_cells *cells = mu_cells_make(&region, slope_density, &density, effort->cells);
     /* Rounding must not carry samples across cells: these are some 1/20 wide. */
     const _Bool sharp = subject->plane.condition * mu_subject_epsilon(subject) < 1e-3;
@@ -129,14 +140,12 @@ void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, 
         mu_tally_p(tally, law, out.ok ? mu_cells_p(cells) : 0, at);
     else
         mu_tally_unresolved(tally, law, at);
-    if (sampler == subject->sampler) {
-        judge_own(subject, (double)effort->samples, view, reflected, &out, tally);
-        if (subject->type) {
-            if (subject->plane.condition * 0x1p-24 < 1e-3)
-                draw_shading(subject, effort, view, &density, random, tally);
-            else
-                mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
-        }
+    if (own) judge_own(subject, (double)effort->samples, view, reflected, &out, tally);
+    if (own && subject->type) {
+        if (subject->plane.condition * 0x1p-24 < 1e-3)
+            draw_shading(subject, effort, view, &density, random, tally);
+        else
+            mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
     }
     mu_cells_free(cells);
 }

@@ -58,6 +58,19 @@ void mu_tally_error(mu_tally *tally, mu_law law, double error, double tolerance,
     }
 }
 
+void mu_tally_equal(mu_tally *tally, mu_law law, double a, double b, double accuracy, double slack,
+                    mu_case at) {
+    const double size = fmax(fabs(a), fabs(b)), error = (a - b) / size, tolerance = accuracy + slack / size;
+    if (a == 0 && b == 0)
+        mu_tally_error(tally, law, 0, accuracy, at);
+    else if (!isfinite(a) || !isfinite(b))
+        mu_tally_error(tally, law, NAN, accuracy, at);
+    else if (slack > 0.1 * fabs(b))
+        mu_tally_unresolved(tally, law, at);
+    else
+        mu_tally_error(tally, law, error, tolerance, at);
+}
+
 void mu_tally_p(mu_tally *tally, mu_law law, double p, mu_case at) {
     mu_tally_row *row = &tally->row[law];
     row->count++;

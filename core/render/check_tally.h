@@ -72,6 +72,11 @@ void mu_tally_add(mu_tally *sum, const mu_tally *tally);
 
 /* Not a number counts as infinitely wrong. */
 void mu_tally_error(mu_tally *tally, mu_law law, double error, double tolerance, mu_case at);
+/* a = b, relatively: within `accuracy`, and `slack` (absolute): what rounding may change in b. Two zeros
+ * agree. Where the slack exceeds a tenth of b itself, agreement and disagreement mean as little: beyond
+ * reach. */
+void mu_tally_equal(mu_tally *tally, mu_law law, double a, double b, double accuracy, double slack,
+                    mu_case at);
 void mu_tally_p(mu_tally *tally, mu_law law, double p, mu_case at);
 void mu_tally_unresolved(mu_tally *tally, mu_law law, mu_case at);
 

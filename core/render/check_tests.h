@@ -13,10 +13,11 @@
 #include "core/render/check_tally.h"
 
 typedef struct mu_check_effort {
-    size_t panels;  /* of adaptive quadrature */
-    size_t samples; /* of each sampler and view */
-    size_t cells;   /* of each chi^2 */
-    size_t points;  /* compared pointwise per view */
+    size_t panels;          /* of adaptive quadrature */
+    size_t samples;         /* of each sampler and view */
+    size_t shading_samples; /* the same, of the shading calls, which are faster */
+    size_t cells;           /* of each chi^2 */
+    size_t points;          /* compared pointwise per view */
 } mu_check_effort;
 
 /* What the reflected half of the sphere holds, by quadrature. */

@@ -83,7 +83,8 @@ static musurf_result gather(given *g, const musurf_setting *settings, size_t cou
     for (size_t i = 0; i < count; i++) {
         const musurf_setting *s = (const void *)((const char *)settings + i * settings[0].size);
         if (!COVERS(s, param) || s->param < 1 || s->param > PARAMETER_COUNT)
-            return fail(g->host, MUSURF_INVALID, MUSURF_NO_PARAM, "setting %zu is of no known parameter", i);
+            return fail(g->host, MUSURF_INVALID, COVERS(s, param) ? s->param : MUSURF_NO_PARAM,
+                        "setting %zu is of no known parameter", i);
         const musurf_param *p = &musurf_parameters[s->param - 1];
         if (g->by_id[p->id]) return fail(g->host, MUSURF_INVALID, p->id, "is set twice");
         g->by_id[p->id] = s;

@@ -17,5 +17,5 @@ run-test: all $(TEST_PROGRAMS)
 
 # Speed, as ratios measured in one run; one that falls short of its goal fails.
 bench: all $(BENCHMARKS)
-	@for program in $(BENCHMARKS); do BUILD=$(BUILD) $$program || exit 1; done
-	@BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py
+	@failed=0; for program in $(BENCHMARKS); do BUILD=$(BUILD) $$program || failed=1; done; \
+	BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py || failed=1; exit $$failed

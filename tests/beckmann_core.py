@@ -32,8 +32,9 @@ class Core:
         return 1 / (1 + Lambda), np.array([v[2] for v in directions]) * (1 + Lambda)
 
     def joint(self, alpha, m, a, b):
-        light = 0 if self.mutant == "G1 for G2" else self.smith(alpha, m, b)
-        return 1 / (1 + self.smith(alpha, m, a) + light)
+        right = 1 / (1 + self.smith(alpha, m, a) + self.smith(alpha, m, b))
+        wrong = 1 / (1 + self.smith(alpha, m, a))
+        return (wrong if self.mutant == "G1 for G2" else right, wrong if "G1" in (self.mutant or "") else right)
 
     def distribution(self, alpha, m, normals):
         alpha, m = self.prepared(alpha, m)

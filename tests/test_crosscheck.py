@@ -160,7 +160,8 @@ class Verdicts(unittest.TestCase):
 
     def test_wrong_cores_fail(self):
         for mutant, found in (("no determinant", "D of normals"), ("M inverse", "D of normals"), ("M inverse", "sigma"),
-                              ("M inverse", "G1 projected mean"), ("G1 for G2", "G2 / (G1 G1)"), ("alpha 5 % large", "sigma"),
+                              ("M inverse", "G1 projected mean"), ("G1 for G2", "G2 / (G1 G1)"),
+                              ("G1 for G2 in f", "G2 / (G1 G1)"), ("alpha 5 % large", "sigma"),
                               ("cube for fourth power", "D of normals")):
             with self.subTest(mutant=mutant, found=found):
                 self.assertIn(found, self.failing(mutant))

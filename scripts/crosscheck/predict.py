@@ -48,8 +48,17 @@ class Core:
         return self.column(answers, "G1"), self.column(answers, "sigma")
 
     def joint(self, alpha, m, a, b):
-        """G2 of a as viewer and b as light."""
-        return float(self.column(self.evaluate(alpha, m, [{"wo": a, "wi": b}]), "G2")[0])
+        """G2 of a as viewer and b as light, as asked for and as it stands in the BRDF, f = F D G2 / (4 cos cos).
+
+        Where D underflows f tells nothing, and both are the former.
+        """
+        half = (np.asarray(a) + b) / np.linalg.norm(np.asarray(a) + b)
+        answers = self.evaluate(alpha, m, [{"wo": a, "wi": b, "wm": half}])
+        g2, d = (float(self.column(answers, name)[0]) for name in ("G2", "D"))
+        if not d > 1e-280:
+            return g2, g2
+        fresnel, f = (float(answers[0][name][0]) for name in ("F", "f"))
+        return g2, 4 * f * a[2] * b[2] / (d * fresnel)
 
     def distribution(self, alpha, m, normals):
         """D at normals [..., 3], 1/sr."""

@@ -23,7 +23,8 @@ EXPLAIN = {
     "G1 per slope": "Average visibility of the facets whose slope along the view, over alpha, lies in a bin. Smith gives one "
                "value to all; Gaussian surfaces do not. The known deviation was measured beforehand by an exact caster.",
     "G2 / (G1 G1)": "Being seen by both over what independence predicts, for facets of like normals. The core's "
-               "height-correlated G2 must lie between independence and the measurement, be symmetric, and not exceed the smaller G1.",
+               "height-correlated G2 must lie between independence and the measurement, be symmetric, not exceed the smaller G1, "
+               "and be the same within the BRDF f.",
 }
 COLUMNS = (("map", "M"), ("view", "view of the original"), ("lit_from", "lit from"), ("bin", "bin"), ("low", "slope from"),
            ("high", "to"), ("different", "differing bits"), ("total", "of"), ("different_from_mesh", "from the untransformed mesh"),

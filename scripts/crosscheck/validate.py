@@ -63,7 +63,13 @@ def run(options, build, command):
     folder.mkdir(parents=True, exist_ok=True)
     steps = progress.Steps(experiment.work(setup))
     scratch = pathlib.Path(tempfile.mkdtemp(prefix="povray.", dir=folder))
-    measured = experiment.run(setup, scratch, steps)
+    try:
+        measured = experiment.run(setup, scratch, steps)
+    except povray.PovrayError as error:
+        raise povray.PovrayError(f"{error} (kept in {scratch})") from None
+    except BaseException:
+        shutil.rmtree(scratch, ignore_errors=True)
+        raise
     shutil.rmtree(scratch)
     rows, shares = judge(setup, measured, core, steps)
     steps.finish()

@@ -36,7 +36,7 @@ def processor():
 def gather(build, validation):
     rows = [("machine", processor()), ("system", f"{platform.system()} {platform.release()}"), ("python", platform.python_version())]
     try:
-        rows += list(flattened(json.loads(output(str(build / "musurf"), "info")).get("build", {}), "musurf "))
+        rows += list(flattened(json.loads(output(str(build / "musurf"), "info", "--json")).get("build", {}), "musurf "))
     except ValueError:
         pass
     if validation.get("povray"):

@@ -189,28 +189,29 @@ static void test_syntax_errors(void **state) {
         const char *text, *message;
         size_t length; /* 0: strlen */
     } cases[] = {
-        {"", "file:1:1: is empty; a JSON object is needed", 0},
-        {" \n\t", "file:1:1: is empty; a JSON object is needed", 0},
-        {"{\"a\": 1,\n \"b\": [1, 2}", "file:2:12: ']' expected at '}'", 0},
+        {"", "file:1:1: $: is empty; a JSON object is needed", 0},
+        {" \n\t", "file:1:1: $: is empty; a JSON object is needed", 0},
+        {"{\"a\": 1,\n \"b\": [1, 2}", "file:2:12: $.b[1]: ']' expected at '}'", 0},
         {"{\"a\": 1,\n \"b\": [1, 2",
-         "file:2:12: the text ends, but the '[' of line 2, column 7 is not closed", 0},
-        {"{\"a\": {\"b\": [] ", "file:1:16: the text ends, but the '{' of line 1, column 7 is not closed", 0},
+         "file:2:12: $.b[1]: the text ends, but the '[' of line 2, column 7 is not closed", 0},
+        {"{\"a\": {\"b\": [] ",
+         "file:1:16: $.a.b: the text ends, but the '{' of line 1, column 7 is not closed", 0},
         {"{\"a\": 1, \"\\u0061\": 2}",
-         "file:1:10: the key \"\\u0061\" stands here a second time; give it once", 0},
+         "file:1:10: $: the key \"\\u0061\" stands here a second time; give it once", 0},
         {"{\"a\": 1e999}",
-         "file:1:7: the number 1e999 is too large; at most 1.797e308, whole numbers to 2^63-1", 0},
+         "file:1:7: $.a: the number 1e999 is too large; at most 1.797e308, whole numbers to 2^63-1", 0},
         {"{\"a\": -1e999}",
-         "file:1:7: the number -1e999 is too large; at most 1.797e308, whole numbers to 2^63-1", 0},
+         "file:1:7: $.a: the number -1e999 is too large; at most 1.797e308, whole numbers to 2^63-1", 0},
         {"[99999999999999999999]",
-         "file:1:2: the number 99999999999999999999 is too large; at most 1.797e308, "
+         "file:1:2: $[0]: the number 99999999999999999999 is too large; at most 1.797e308, "
          "whole numbers to 2^63-1",
          0},
-        {"[NaN]", "file:1:2: NaN is not JSON; a finite number is needed", 0},
-        {"[1,\n Infinity]", "file:2:2: Infinity is not JSON; a finite number is needed", 0},
-        {"{} x", "file:1:4: more text, x after the end of the document; nothing may follow it", 0},
-        {"[\"\xff\"]", "file:1:3: byte 0xff is not UTF-8", 0},
-        {"[\n\"\xc3\xa9\xed\xa0\x80\"]", "file:2:3: byte 0xed is not UTF-8", 0},
-        {"[1,\0 2]", "file:1:4: a NUL byte; JSON text is needed", 7},
+        {"[NaN]", "file:1:2: $[0]: NaN is not JSON; a finite number is needed", 0},
+        {"[1,\n Infinity]", "file:2:2: $[1]: Infinity is not JSON; a finite number is needed", 0},
+        {"{} x", "file:1:4: $: more text, x after the end of the document; nothing may follow it", 0},
+        {"[\"\xff\"]", "file:1:3: $[0]: byte 0xff is not UTF-8", 0},
+        {"[\n\"\xc3\xa9\xed\xa0\x80\"]", "file:2:3: $[0]: byte 0xed is not UTF-8", 0},
+        {"[1,\0 2]", "file:1:4: $[1]: a NUL byte; JSON text is needed", 7},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         mu_error error = {""};
@@ -227,7 +228,7 @@ static void test_first_line_counts(void **state) {
     mu_error error = {""};
     mu_document d;
     assert_false(mu_document_parse(&d, "stdin", "{\"a\" 1}", 7, 41, &error));
-    assert_string_equal(error.text, "stdin:41:6: ':' expected at '1'");
+    assert_string_equal(error.text, "stdin:41:6: $.a: ':' expected at '1'");
 }
 
 static void test_byte_order_mark(void **state) {
@@ -248,7 +249,7 @@ static void test_deep_nesting(void **state) {
         mu_error error = {""};
         mu_document d;
         assert_false(mu_document_parse(&d, "file", text, length, 1, &error));
-        assert_non_null(strstr(error.text, "nested deeper than 2048 levels"));
+        assert_non_null(strstr(error.text, ": $...: nested deeper than 2048 levels"));
     }
     free(text);
 }
@@ -274,14 +275,14 @@ static void test_files(void **state) {
     FILE *out = fopen(file, "w");
     assert_non_null(out);
     assert_int_equal(fclose(out), 0);
-    expect_refused(file, ":1:1: is empty; a JSON object is needed");
+    expect_refused(file, ":1:1: $: is empty; a JSON object is needed");
     if (geteuid() != 0) { /* root may read everything */
         assert_int_equal(chmod(file, 0), 0);
         expect_refused(file, ": cannot be opened: Permission denied");
         assert_int_equal(chmod(file, 0600), 0);
     }
     assert_int_equal(truncate(file, 100 << 20), 0);
-    expect_refused(file, ": larger than 8 MiB; no document needs that");
+    expect_refused(file, ":1:1: $: larger than 8 MiB; no document needs that");
 
     out = fopen(file, "w");
     assert_non_null(out);

@@ -62,8 +62,8 @@ class Lines(unittest.TestCase):
             ('{"id": 5, "material": %s, "wo": [0,0]}' % json.dumps(GGX), "$.wo: is an array of 2; an array of 3"),
             ('{"id": 6, "material": %s, "wo": [0,0,1], "wm": [0,"1",0]}' % json.dumps(GGX), '$.wm[1]: is "1"; a number'),
             ('{"id": 7, "material": %s, "wo": [0,0,1], "wh": [0,1,0]}' % json.dumps(GGX), "$.wh: this key is not known"),
-            ('{"id": 8, "wo": [0,0,NaN]}', "stdin:{}:22: NaN is not JSON; a finite number is needed"),
-            ('{"id": 9, "wo": [0,0,1e999]}', "stdin:{}:22: the number 1e999 is too large"),
+            ('{"id": 8, "wo": [0,0,NaN]}', "stdin:{}:22: $.wo[2]: NaN is not JSON; a finite number is needed"),
+            ('{"id": 9, "wo": [0,0,1e999]}', "stdin:{}:22: $.wo[2]: the number 1e999 is too large"),
             ('{"id": 10, "wo": [0,0,1]', "the '{{' of line {}, column 1 is not closed"),
             ('{"id": 11, "a": 1, "a": 2}', 'the key "a" stands here a second time'),
             ('{"id": 12} {"id": 13}', "more text"),
@@ -92,8 +92,8 @@ class Lines(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         out = answers(done)
         self.assertEqual([a["id"] for a in out], [1, 2, None, None])
-        self.assertIn("stdin:1:18: byte 0xff is not UTF-8", out[0]["error"])
-        self.assertIn("stdin:2:12: a NUL byte", out[1]["error"])
+        self.assertIn("stdin:1:18: $.wo: byte 0xff is not UTF-8", out[0]["error"])
+        self.assertIn("stdin:2:12: $: a NUL byte", out[1]["error"])
 
     def test_a_line_of_brackets_without_end(self):
         good = json.dumps({"id": "good", "material": GGX, "wo": UP}).encode()

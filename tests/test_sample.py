@@ -70,10 +70,10 @@ class Sample(unittest.TestCase):
         self.assertGreater(near, 0.95 * len(both))
 
     def test_bad_input(self):
-        for text, words in (("", "stdin:1:1: is empty"), ('{"material": 3', "is not closed"), ("{}", "$.wo: is missing"),
+        for text, words in (("", "stdin:1:1: $: is empty"), ('{"material": 3', "is not closed"), ("{}", "$.wo: is missing"),
                             ('{"wo": [0,0,1]}', "$.material: is missing"),
                             ('{"wo": [0,0,1], "wi": [0,0,1]}', "$.wi: this key is not known"),
-                            ("{}\n{}", "stdin:2:1: more text")):
+                            ("{}\n{}", "stdin:2:1: $: more text")):
             done = musurf("sample", stdin=text)
             self.assertEqual((done.returncode, done.out), (2, ""), text)
             self.assertEqual(done.err.count("\n"), 1)

@@ -24,6 +24,9 @@ _Bool mu_map_make(mu_map *map, const mu_affine *affine) {
         for (int j = 0; j < 3; ++j) map->linear[i][j] = (double)affine->row[i][j];
         map->translation[i] = (double)affine->row[i][3];
     }
+    map->identity = 1;
+    for (int i = 0; i < 9; ++i)
+        if (map->linear[i / 3][i % 3] != (i % 4 == 0 ? 1 : 0)) map->identity = 0;
     for (int j = 0; j < 3; ++j) column[j] = mu_d3(map->linear[0][j], map->linear[1][j], map->linear[2][j]);
     const mu_dvec3 cross[3] = {mu_dcross(column[1], column[2]), mu_dcross(column[2], column[0]),
                                mu_dcross(column[0], column[1])};

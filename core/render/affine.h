@@ -15,6 +15,7 @@ typedef struct mu_map {
     double linear[3][3], translation[3];
     double inverse[3][3]; /* of linear */
     double determinant;   /* negative: a mirror */
+    _Bool identity;       /* of linear: nothing is multiplied */
 } mu_map;
 
 static inline mu_dvec3 mu_d3(double x, double y, double z) {
@@ -60,8 +61,18 @@ static inline mu_dvec3 mu_transpose_times(const double (*m)[3], mu_dvec3 v) {
                       m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
                       m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
 }
+static inline double mu_dmax(double a, double b) { /* one instruction where fmax is a call */
+    return a > b ? a : b;
+}
+/* Differences of points, and normals, which go with the inverse transpose. */
+static inline mu_dvec3 mu_map_vector(const mu_map *map, mu_dvec3 v) {
+    return map->identity ? v : mu_matrix_times(map->linear, v);
+}
+static inline mu_dvec3 mu_map_normal(const mu_map *map, mu_dvec3 n) {
+    return map->identity ? n : mu_transpose_times(map->inverse, n);
+}
 static inline mu_dvec3 mu_map_point(const mu_map *map, mu_dvec3 p) {
-    return mu_dadd(mu_matrix_times(map->linear, p),
+    return mu_dadd(mu_map_vector(map, p),
                    (mu_dvec3){map->translation[0], map->translation[1], map->translation[2]});
 }
 

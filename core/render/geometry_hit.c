@@ -34,14 +34,14 @@ typedef struct mu_local {
 } mu_local;
 
 static double largest(mu_dvec3 a) {
-    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+    return mu_dmax(fabs(a.x), mu_dmax(fabs(a.y), fabs(a.z)));
 }
 
 /* 13 E^3 / A of the triangle with these edges, at most a thousandth of E / u: beyond that it is a needle that
  * no ray is tested against reliably. */
 static double test_error(mu_dvec3 e1, mu_dvec3 e2) {
     const mu_dvec3 e3 = mu_dsub(e2, e1);
-    const double edge = sqrt(fmax(mu_ddot(e1, e1), fmax(mu_ddot(e2, e2), mu_ddot(e3, e3))));
+    const double edge = sqrt(mu_dmax(mu_ddot(e1, e1), mu_dmax(mu_ddot(e2, e2), mu_ddot(e3, e3))));
     const double area = mu_dlength(mu_dcross(e1, e2));
     const double needle = 1e-3 / MU_UNIT;
     return edge * (area * needle > 13 * edge * edge ? 13 * edge * edge / area : needle);
@@ -56,12 +56,11 @@ static void on_rectangle(const mu_object *object, const mu_map *map, const mu_fo
     local->t = mu_d3(1, 0, 0);
     local->dpdu = mu_d3(w, 0, 0);
     local->dpdv = mu_d3(0, h, 0);
-    local->test =
-        test_error(mu_matrix_times(map->linear, local->dpdu), mu_matrix_times(map->linear, local->dpdv));
+    local->test = test_error(mu_map_vector(map, local->dpdu), mu_map_vector(map, local->dpdv));
     for (int i = 0; i < 4; ++i)
         local->reach =
-            fmax(local->reach,
-                 largest(mu_map_point(map, mu_d3(i & 1 ? w / 2 : -w / 2, i & 2 ? h / 2 : -h / 2, 0))));
+            mu_dmax(local->reach,
+                    largest(mu_map_point(map, mu_d3(i & 1 ? w / 2 : -w / 2, i & 2 ? h / 2 : -h / 2, 0))));
 }
 
 /* Longitude runs counter-clockwise about +z from +x; at the poles it is taken as 0, so the tangent is +y
@@ -126,8 +125,8 @@ static void on_triangle(const mu_mesh *mesh, const mu_map *map, const mu_found *
         local->test = test_error(e1, e2);
         return;
     }
-    local->test = test_error(mu_matrix_times(map->linear, e1), mu_matrix_times(map->linear, e2));
-    for (int i = 0; i < 3; ++i) local->reach = fmax(local->reach, largest(mu_map_point(map, p[i])));
+    local->test = test_error(mu_map_vector(map, e1), mu_map_vector(map, e2));
+    for (int i = 0; i < 3; ++i) local->reach = mu_dmax(local->reach, largest(mu_map_point(map, p[i])));
 }
 
 static double frobenius(const double (*m)[3]) {
@@ -162,7 +161,7 @@ static float finite_or_zero(double value) {
 }
 
 static mu_vec3 derivative(const mu_map *map, mu_dvec3 d) {
-    const mu_dvec3 world = mu_matrix_times(map->linear, d);
+    const mu_dvec3 world = mu_map_vector(map, d);
     return mu_v3(finite_or_zero(world.x), finite_or_zero(world.y), finite_or_zero(world.z));
 }
 
@@ -182,10 +181,10 @@ void mu_hit_fill(const struct mu_geometry *geometry, const mu_ray *ray, const mu
     if (object->shape == MU_MESH) on_triangle(&geometry->scene->meshes[object->mesh], map, found, &local);
 
     const mu_dvec3 p = mu_map_point(map, local.p);
-    const mu_dvec3 ng = mu_dnormalise(mu_transpose_times(map->inverse, local.ng));
-    mu_dvec3 n = mu_dnormalise(mu_transpose_times(map->inverse, local.n));
+    const mu_dvec3 ng = mu_dnormalise(mu_map_normal(map, local.ng));
+    mu_dvec3 n = mu_dnormalise(mu_map_normal(map, local.n));
     if (!(mu_ddot(n, ng) > 0)) n = ng; /* normals so bent that they point through their own triangle */
-    const mu_dvec3 along = mu_matrix_times(map->linear, local.t);
+    const mu_dvec3 along = mu_map_vector(map, local.t);
     mu_dvec3 t = mu_dsub(along, mu_dscale(n, mu_ddot(along, n)));
     t = mu_dlength(t) > 1e-6 * mu_dlength(along) ? mu_dnormalise(t) : mu_orthogonal(n);
 

@@ -3,8 +3,8 @@
 /*
  * integrator.h: one path through one pixel.
  *
- * Every random number is a function of (seed, pixel, sample index, dimension), so the picture does not depend on
- * who computes which sample in what order.
+ * Every random number is a function of (seed, pixel, sample index, dimension), so the picture does not depend
+ * on who computes which sample in what order.
  */
 #ifndef MU_INTEGRATOR_H
 #define MU_INTEGRATOR_H
@@ -20,15 +20,16 @@ typedef struct mu_tracer { /* borrowed, read-only, shared by threads */
 
 typedef struct mu_radiance {
     float rgb[3];
-    float albedo[3]; /* at the first hit; 0 where the ray escapes */
-    float normal[3]; /* world space, shading normal of the first hit */
-    uint32_t rays;   /* traced, shadow rays included */
-    uint32_t refused; /* contributions left out because they were not finite or negative: always 0, or it is a bug */
-    _Bool hit;       /* the camera ray hit something: alpha */
+    float albedo[3];  /* at the first hit; 0 where the ray escapes */
+    float normal[3];  /* world space, shading normal of the first hit */
+    uint32_t rays;    /* traced, shadow rays included */
+    uint32_t refused; /* contributions left out because they were not finite or negative: always 0, or it is a
+                         bug */
+    _Bool hit;        /* the camera ray hit something: alpha */
 } mu_radiance;
 
-/* [any] `scratch` is this thread's, of at least mu_integrator_scratch() bytes, aligned to 64: it holds the closures,
- * so nothing is allocated while shading. */
+/* [any] `scratch` is this thread's, of at least mu_integrator_scratch() bytes, aligned to 64: it holds the
+ * closures, so nothing is allocated while shading. */
 size_t mu_integrator_scratch(const mu_scene *scene);
 void mu_integrator_path(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t sample,
                         void *scratch, mu_radiance *out);

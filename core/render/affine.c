@@ -34,10 +34,14 @@ _Bool mu_map_make(mu_map *map, const mu_affine *affine) {
     const double largest = mu_dlength(column[0]) * mu_dlength(column[1]) * mu_dlength(column[2]);
     map->determinant = determinant;
     if (!(fabs(determinant) > MU_SINGULAR * largest)) return 0;
+    double squares = 0, inverse_squares = 0;
     for (int i = 0; i < 3; ++i) {
+        squares += mu_ddot(column[i], column[i]);
+        inverse_squares += mu_ddot(cross[i], cross[i]) / (determinant * determinant);
         map->inverse[i][0] = cross[i].x / determinant;
         map->inverse[i][1] = cross[i].y / determinant;
         map->inverse[i][2] = cross[i].z / determinant;
     }
+    map->condition = sqrt(squares * inverse_squares) * largest / fabs(determinant);
     return 1;
 }

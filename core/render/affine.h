@@ -16,6 +16,7 @@ typedef struct mu_map {
     double inverse[3][3]; /* of linear */
     double determinant;   /* negative: a mirror */
     _Bool identity;       /* of linear: nothing is multiplied */
+    double condition;     /* |linear| |inverse| times Hadamard's ratio, Frobenius norms; 3 if a rotation */
 } mu_map;
 
 static inline mu_dvec3 mu_d3(double x, double y, double z) {

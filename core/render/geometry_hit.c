@@ -12,7 +12,7 @@
  * The error bound, with u = 2^-24 and first-order analysis of what is rounded on the way (distances along
  * ng):
  * - p is rounded to float, and so is the offset origin: u sum |n_i p_i| each;
- * - a world-space vertex is rounded: u sum |n_i| max |v_i|;
+ * - a world-space vertex v is rounded: u sum |n_i| max |v_i|, and no |v_i| is beyond max |p_i| + E;
  * - Embree's test of a triangle with longest edge E and doubled area A, from an origin at it: the three
  * corners relative to the origin (u E each), edges from those (3 u E), normal (9 u E^2), distance to the
  * plane 13 u E^3 / A;
@@ -29,22 +29,22 @@
 typedef struct mu_local {
     mu_dvec3 p, ng, n, t, dpdu, dpdv; /* not normalised; t zero if there is none */
     double u, v;
-    double reach; /* largest world coordinate among the corners tested against; 0: exact */
-    double test;  /* error of the ray's test in units of u, in the space in which it is done */
+    double edge; /* longest edge E of what was tested against; 0: tested against exactly */
+    double test; /* error of the ray's test in units of u, in the space in which it is done */
 } mu_local;
 
 static double largest(mu_dvec3 a) {
     return mu_dmax(fabs(a.x), mu_dmax(fabs(a.y), fabs(a.z)));
 }
 
-/* 13 E^3 / A of the triangle with these edges, at most a thousandth of E / u: beyond that it is a needle that
- * no ray is tested against reliably. */
-static double test_error(mu_dvec3 e1, mu_dvec3 e2) {
-    const mu_dvec3 e3 = mu_dsub(e2, e1);
-    const double edge = sqrt(mu_dmax(mu_ddot(e1, e1), mu_dmax(mu_ddot(e2, e2), mu_ddot(e3, e3))));
-    const double area = mu_dlength(mu_dcross(e1, e2));
-    const double needle = 1e-3 / MU_UNIT;
-    return edge * (area * needle > 13 * edge * edge ? 13 * edge * edge / area : needle);
+/* E, and 13 E^3 / A of the triangle with these edges, the latter at most a thousandth of E / u: beyond that
+ * it is a needle that no ray is tested against reliably. */
+static void set_test_error(mu_local *local, mu_dvec3 e1, mu_dvec3 e2) {
+    const mu_dvec3 e3 = mu_dsub(e2, e1), cross = mu_dcross(e1, e2);
+    const double edge2 = mu_dmax(mu_ddot(e1, e1), mu_dmax(mu_ddot(e2, e2), mu_ddot(e3, e3)));
+    const double aspect = 13 * edge2 / mu_dlength(cross), needle = 1e-3 / MU_UNIT;
+    local->edge = sqrt(edge2);
+    local->test = local->edge * (aspect < needle ? aspect : needle);
 }
 
 static void on_rectangle(const mu_object *object, const mu_map *map, const mu_found *found, mu_local *local) {
@@ -56,11 +56,7 @@ static void on_rectangle(const mu_object *object, const mu_map *map, const mu_fo
     local->t = mu_d3(1, 0, 0);
     local->dpdu = mu_d3(w, 0, 0);
     local->dpdv = mu_d3(0, h, 0);
-    local->test = test_error(mu_map_vector(map, local->dpdu), mu_map_vector(map, local->dpdv));
-    for (int i = 0; i < 4; ++i)
-        local->reach =
-            mu_dmax(local->reach,
-                    largest(mu_map_point(map, mu_d3(i & 1 ? w / 2 : -w / 2, i & 2 ? h / 2 : -h / 2, 0))));
+    set_test_error(local, mu_map_vector(map, local->dpdu), mu_map_vector(map, local->dpdv));
 }
 
 /* Longitude runs counter-clockwise about +z from +x; at the poles it is taken as 0, so the tangent is +y
@@ -121,38 +117,22 @@ static void on_triangle(const mu_mesh *mesh, const mu_map *map, const mu_found *
         }
     }
     local->t = mesh->tangents ? blend(mesh->tangents, 4, corner, weight) : local->dpdu;
-    if (found->instance) {
-        local->test = test_error(e1, e2);
-        return;
-    }
-    local->test = test_error(mu_map_vector(map, e1), mu_map_vector(map, e2));
-    for (int i = 0; i < 3; ++i) local->reach = mu_dmax(local->reach, largest(mu_map_point(map, p[i])));
-}
-
-static double frobenius(const double (*m)[3]) {
-    double sum = 0;
-    for (int i = 0; i < 9; ++i) sum += m[i / 3][i % 3] * m[i / 3][i % 3];
-    return sqrt(sum);
+    if (found->instance) /* tested in the mesh's own space */
+        set_test_error(local, e1, e2);
+    else
+        set_test_error(local, mu_map_vector(map, e1), mu_map_vector(map, e2));
 }
 
 static double error_bound(const mu_map *map, const mu_local *local, const mu_found *found, mu_dvec3 p,
                           mu_dvec3 ng) {
-    const double span = fabs(ng.x) + fabs(ng.y) + fabs(ng.z);
-    double bound = 2 * (fabs(ng.x * p.x) + fabs(ng.y * p.y) + fabs(ng.z * p.z)) + span * local->reach;
+    double bound = 2 * (fabs(ng.x * p.x) + fabs(ng.y * p.y) + fabs(ng.z * p.z));
     double test = local->test;
     if (found->instance) {
-        const double linear = frobenius(map->linear), inverse = frobenius(map->inverse);
-        double ratio = 1;
-        for (int j = 0; j < 3; ++j) {
-            const double(*m)[3] = map->linear;
-            ratio *= sqrt(m[0][j] * m[0][j] + m[1][j] * m[1][j] + m[2][j] * m[2][j]);
-        }
-        ratio /= fabs(map->determinant);
-        const double size =
-            mu_dlength(p) + mu_dlength(mu_d3(map->translation[0], map->translation[1], map->translation[2]));
-        bound += 8 * ratio * linear * inverse * size;
+        const double *t = map->translation;
+        bound += 8 * map->condition * (mu_dlength(p) + mu_dlength(mu_d3(t[0], t[1], t[2])));
         test *= mu_dlength(mu_transpose_times(map->linear, ng));
-    }
+    } else if (local->edge > 0)
+        bound += (fabs(ng.x) + fabs(ng.y) + fabs(ng.z)) * (largest(p) + local->edge);
     return MU_UNIT * (bound + test) + (double)FLT_MIN;
 }
 

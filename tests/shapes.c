@@ -12,18 +12,11 @@
 
 #include "core/render/mesh.h"
 
-double test_uniform(test_random *random) {
-    uint64_t z = random->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+double test_between(uniform *random, double low, double high) {
+    return low + (high - low) * uniform_double(random);
 }
 
-double test_between(test_random *random, double low, double high) {
-    return low + (high - low) * test_uniform(random);
-}
-
-mu_vec3 test_direction(test_random *random) {
+mu_vec3 test_direction(uniform *random) {
     const double z = test_between(random, -1, 1), phi = test_between(random, 0, 6.283185307179586);
     const double r = sqrt(1 - z * z);
     return mu_v3((float)(r * cos(phi)), (float)(r * sin(phi)), (float)z);
@@ -33,7 +26,7 @@ mu_affine test_identity(void) {
     return (mu_affine){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 }
 
-mu_affine test_affine(test_random *random, double translation) {
+mu_affine test_affine(uniform *random, double translation) {
     mu_affine a;
     mu_map map;
     double volume;
@@ -88,7 +81,7 @@ mu_mesh test_globe(uint32_t around, uint32_t up) {
     return mesh;
 }
 
-mu_mesh test_soup(test_random *random, uint32_t triangles) {
+mu_mesh test_soup(uniform *random, uint32_t triangles) {
     mu_mesh mesh = room(3 * triangles, triangles);
     for (uint32_t i = 0; i < 9 * triangles; ++i) mesh.positions[i] = (float)test_between(random, -1, 1);
     for (uint32_t i = 0; i < 3 * triangles; ++i) mesh.indices[i] = i;

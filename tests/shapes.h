@@ -1,28 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* shapes.h: random numbers, meshes and scenes made in memory, for the tests of geometry and meshes. */
+/* shapes.h: random directions and maps, meshes and scenes made in memory, for the tests of geometry and
+ * meshes. */
 #ifndef MU_TEST_SHAPES_H
 #define MU_TEST_SHAPES_H
 
 #include "core/render/affine.h"
 #include "core/render/geometry.h"
+#include "tests/uniform.h"
 
-typedef struct test_random {
-    uint64_t state; /* splitmix64 */
-} test_random;
-
-double test_uniform(test_random *random); /* [0, 1) */
-double test_between(test_random *random, double low, double high);
-mu_vec3 test_direction(test_random *random); /* unit, evenly over the sphere */
+double test_between(uniform *random, double low, double high);
+mu_vec3 test_direction(uniform *random); /* unit, evenly over the sphere */
 
 /* A linear part with columns of lengths 0.2 to 5, not too near singular, a mirror half the time. */
-mu_affine test_affine(test_random *random, double translation);
+mu_affine test_affine(uniform *random, double translation);
 mu_affine test_identity(void);
 
 /* The unit sphere as longitude and latitude strips: normals, UVs; u = 1 and u = 0 are different vertices. */
 mu_mesh test_globe(uint32_t around, uint32_t up);
 /* Triangles with corners in [-1, 1]^3, without normals and UVs. */
-mu_mesh test_soup(test_random *random, uint32_t triangles);
+mu_mesh test_soup(uniform *random, uint32_t triangles);
 
 typedef struct test_scene { /* a scene that owns its arrays; free it with test_scene_free */
     mu_scene scene;

@@ -51,8 +51,8 @@ static void assert_frame(const mu_hit *hit) {
     assert_true(mu_ddot(n, ng) > 0);
 }
 
-static mu_ray toward(test_random *random, const mu_affine *to_world, double distance) {
-    const mu_vec3 inner = mu_scale(test_direction(random), (float)test_uniform(random));
+static mu_ray toward(uniform *random, const mu_affine *to_world, double distance) {
+    const mu_vec3 inner = mu_scale(test_direction(random), (float)uniform_double(random));
     const mu_vec3 target = mu_affine_point(to_world, inner);
     const mu_vec3 direction = test_direction(random);
     return (mu_ray){mu_sub(target, mu_scale(direction, (float)distance)), direction, 0, INFINITY};
@@ -60,7 +60,7 @@ static mu_ray toward(test_random *random, const mu_affine *to_world, double dist
 
 /* In the sphere's own space, with the textbook quadratic in long double. */
 static void test_sphere_is_the_quadric(void **state) {
-    test_random random = {1};
+    uniform random = {1};
     (void)state;
     for (int round = 0; round < 40; ++round) {
         test_scene s = {0};
@@ -131,7 +131,7 @@ static void test_sphere_pole_has_a_frame(void **state) {
 }
 
 static void test_rectangle_is_the_plane(void **state) {
-    test_random random = {2};
+    uniform random = {2};
     (void)state;
     for (int round = 0; round < 40; ++round) {
         test_scene s = {0};
@@ -197,7 +197,7 @@ static double brute_force(const mu_mesh *mesh, const mu_map *map, const mu_ray *
 
 /* One use: vertices stand in the world. Two uses: instances, the second far away. Both must agree with brute
  * force. */
-static void check_soup(test_random *random, const mu_affine *a, _Bool shared) {
+static void check_soup(uniform *random, const mu_affine *a, _Bool shared) {
     test_scene s = {0};
     mu_affine away = *a;
     mu_map map;
@@ -236,7 +236,7 @@ static void check_soup(test_random *random, const mu_affine *a, _Bool shared) {
 }
 
 static void test_soup_is_brute_force(void **state) {
-    test_random random = {3};
+    uniform random = {3};
     (void)state;
     for (int round = 0; round < 20; ++round) {
         const mu_affine a = round ? test_affine(&random, 3) : test_identity();
@@ -246,7 +246,7 @@ static void test_soup_is_brute_force(void **state) {
 
 /* A smooth mesh keeps its outside outside, and its tangents along dp/du, whatever the map. */
 static void test_globe_under_maps(void **state) {
-    test_random random = {4};
+    uniform random = {4};
     (void)state;
     for (int round = 0; round < 20; ++round) {
         test_scene s = {0};

@@ -18,7 +18,7 @@
 enum { RAYS = 4000 };
 
 /* A direction at `cosine` to n, on n's side if that is positive. */
-static mu_vec3 leaving(test_random *random, mu_vec3 n, double cosine) {
+static mu_vec3 leaving(uniform *random, mu_vec3 n, double cosine) {
     const mu_dvec3 z = mu_dnormalise(mu_d3((double)n.x, (double)n.y, (double)n.z)), x = mu_orthogonal(z);
     const mu_dvec3 y = mu_dcross(z, x);
     const double phi = test_between(random, 0, 6.283185307179586), sine = sqrt(1 - cosine * cosine);
@@ -27,8 +27,8 @@ static mu_vec3 leaving(test_random *random, mu_vec3 n, double cosine) {
 }
 
 /* A ray from outside to somewhere inside the object's unit ball or square. */
-static mu_ray arriving(test_random *random, const mu_affine *a, double size, _Bool flat) {
-    mu_vec3 inner = mu_scale(test_direction(random), (float)test_uniform(random));
+static mu_ray arriving(uniform *random, const mu_affine *a, double size, _Bool flat) {
+    mu_vec3 inner = mu_scale(test_direction(random), (float)uniform_double(random));
     if (flat) inner.z = 0;
     const mu_vec3 direction = test_direction(random);
     return (mu_ray){mu_sub(mu_affine_point(a, inner), mu_scale(direction, (float)(20 * size))), direction, 0,
@@ -40,7 +40,7 @@ typedef struct mu_tally {
     double worst; /* offset over (distance from the origin + size), where the map is only a scale */
 } mu_tally;
 
-static void leave_object(test_scene *s, test_random *random, double size, _Bool mapped, mu_tally *tally) {
+static void leave_object(test_scene *s, uniform *random, double size, _Bool mapped, mu_tally *tally) {
     const _Bool flat = s->objects[0].shape == MU_RECTANGLE;
     for (int i = 0; i < RAYS; ++i) {
         const mu_ray ray = arriving(random, &s->objects[0].to_world, size, flat);
@@ -57,7 +57,7 @@ static void leave_object(test_scene *s, test_random *random, double size, _Bool 
 }
 
 /* Linear part: an even scale, or also a random map; translation: none, or ten sizes away. */
-static mu_affine place(test_random *random, double scale, _Bool mapped, _Bool moved) {
+static mu_affine place(uniform *random, double scale, _Bool mapped, _Bool moved) {
     mu_affine a = mapped ? test_affine(random, 0) : test_identity();
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) a.row[i][j] *= (float)scale;
@@ -67,7 +67,7 @@ static mu_affine place(test_random *random, double scale, _Bool mapped, _Bool mo
 }
 
 static void check(int shape, _Bool shared, uint64_t seed, double limit) {
-    test_random random = {seed};
+    uniform random = {seed};
     mu_tally tally = {0, 0, 0};
     for (double scale = 1e-3; scale < 2e4; scale *= 10)
         for (int kind = 0; kind < 4; ++kind) {
@@ -117,7 +117,7 @@ static void test_leaving_instances(void **state) {
 
 /* A ray into a sphere must meet its far side, not the near one again: the chord is 2 r cos. */
 static void test_entering_spheres(void **state) {
-    test_random random = {15};
+    uniform random = {15};
     (void)state;
     for (double scale = 1e-3; scale < 2e4; scale *= 10) {
         test_scene s = {0};

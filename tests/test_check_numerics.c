@@ -198,7 +198,7 @@ static void planes_are_found_from_samples(void **state) {
 }
 
 static const mu_check_effort effort = {
-    .panels = 2000, .samples = 200000, .shading_samples = 0, .cells = 600, .points = 32};
+    .target = 1e-9, .panels = 2000, .samples = 200000, .shading_samples = 0, .cells = 600, .points = 32};
 static const double steep[3] = {0.99144486137381041, 0, 0.13052619222005157}; /* 82.5 degrees */
 
 static void run(const double_ggx *ggx, const double view[3], uint64_t stream, mu_tally *tally) {

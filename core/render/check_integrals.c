@@ -74,18 +74,13 @@ static void reflected_at(void *context, double x, double y, double value[MU_PART
     value[2] = pdf > 0 ? weighted * weighted / pdf * dwi : 0;
 }
 
-/* What quadrature is asked for: well above rounding, far below any fault worth finding. */
-static double wanted(const mu_subject *subject) {
-    return subject->precision == MUSURF_FLOAT ? 1e-4 : 1e-9;
-}
-
 static double noise(const mu_subject *subject) {
     return 16 * mu_subject_epsilon(subject) * subject->plane.condition;
 }
 
 static mu_integral integrate(integral_context *c, const mu_check_effort *effort, mu_integrand integrand,
                              size_t parts, double rounding) {
-    const double target = fmax(wanted(c->subject), rounding);
+    const double target = fmax(c->subject->precision == MUSURF_FLOAT ? 1e-4 : effort->target, rounding);
     const mu_quadrature q = {.integrand = integrand,
                              .context = c,
                              .parts = parts,

@@ -131,6 +131,9 @@ _Bool mu_check_run(const mu_check_settings *settings, mu_plugins *plugins, const
              .lock = PTHREAD_MUTEX_INITIALIZER};
     clock_gettime(CLOCK_MONOTONIC, &r.start);
     if (settings->materials && !(r.type = mu_plugins_type(plugins, type_id, error))) return 0;
+    if (r.type && !(r.type->extension && r.type->extension(MUSURF_PROBE_ID)))
+        return mu_fail(error, "%s does not offer %s, which is needed to look into it", type_id,
+                       MUSURF_PROBE_ID);
     if (r.jobs == 0) return 1;
     pthread_t *threads = calloc(settings->threads, sizeof *threads);
     r.tallies = calloc(r.jobs, sizeof *r.tallies);

@@ -13,6 +13,7 @@
 #include "core/render/check_tally.h"
 
 typedef struct mu_check_effort {
+    double target;          /* error wanted of an integral that should be 1, in double; float stops at 1e-4 */
     size_t panels;          /* of adaptive quadrature */
     size_t samples;         /* of each sampler and view */
     size_t shading_samples; /* the same, of the shading calls, which are faster */

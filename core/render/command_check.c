@@ -113,6 +113,7 @@ static void complete(check_options *o) {
     if (!o->materials_given) s->materials = o->quick ? 11 : 22;
     if (!o->samples_given) s->effort.samples = o->quick ? 10000 : 20000;
     s->effort.shading_samples = 5 * s->effort.samples;
+    s->effort.target = o->quick ? 1e-7 : 1e-8;
     s->effort.panels = 1500;
     s->effort.cells = o->quick ? 200 : 400;
     s->effort.points = o->quick ? 8 : 16;

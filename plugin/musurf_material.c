@@ -13,12 +13,14 @@
 
 enum { ALIGNMENT = 64 };
 
-/* Float shading holds alpha down to here and constant M up to this scale; beyond, D overflows or the table
- * would. */
+/* Float shading holds slope widths down to here (a large gamma narrows gtr) and constant M up to this scale;
+ * beyond, D overflows, or the table would. */
 static int float_suffices(const parsed *p) {
-    const double alpha = p->definition.alpha, scale = sqrt(mu_transform_determinant(p->definition.transform));
-    return alpha == 0 ||
-           (alpha >= 0x1p-30 && alpha <= 0x1p30 && (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
+    const mu_definition *d = &p->definition;
+    const double width = d->ndf == MU_GTR ? d->alpha / sqrt(fmax(1, d->gamma)) : d->alpha;
+    const double scale = sqrt(mu_transform_determinant(d->transform));
+    return d->alpha == 0 ||
+           (width >= 0x1p-30 && width <= 0x1p30 && (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
 }
 
 static const char *transform_class(const parsed *p) {

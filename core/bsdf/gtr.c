@@ -25,7 +25,7 @@ static inline real z_lambda(const base *b, real r2, real z2, real z) {
     const real *g = b->shape;
 #if MU_REAL_BITS == 53
     (void)z2;
-    return mu_gtr_z_lambda(g[GTR_ALPHA], g[GTR_GAMMA], sqrt(r2) / g[GTR_UNIT], z, 16);
+    return mu_gtr_z_lambda(g[GTR_ALPHA], g[GTR_GAMMA], smaller(sqrt(r2) / g[GTR_UNIT], 1e300), z, 16);
 #else
     const float table_r2 = r2 * g[GTR_TABLE_R2], sum = larger(sqrtf(z2 + table_r2) + z, REAL_MIN);
     const float ggx = table_r2 / sum, v = smaller(ggx / sum, 0x0.ffffffp0f);
@@ -82,7 +82,7 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
 }
 
 static double unit_of(double alpha, double gamma) {
-    return gamma < 1 ? 1 : alpha / sqrt(fmax(1, mu_gtr_peak(alpha, gamma)));
+    return gamma < 1 ? 1 : fmax(alpha / sqrt(fmax(1, mu_gtr_peak(alpha, gamma))), 1e-300);
 }
 
 /* The table is about alpha, or the unit where that is smaller. */

@@ -34,7 +34,8 @@ static survival survival_make(double alpha, double gamma) {
 /* Q = (q^d - 1) / (a^d - 1), q = (x + a) / (1 + x) */
 static double survival_at(const survival *q, double x) {
     const double away = q->one_minus_a / (1 + x);
-    const double ln_q = away < 0.5 ? log1p(-away) : log((x + q->a) / (1 + x));
+    const double ln_q =
+        away < 0.5 ? log1p(-away) : fmax(log((x + q->a) / (1 + x)), q->ln_a); /* a may underflow */
     if (q->d == 0) return ln_q * q->inverse;
     if (q->d > 0) return expm1(q->d * ln_q) * q->inverse;
     const double above = q->a > 0 ? log1p(x / q->a) - log1p(x) : ln_q - q->ln_a; /* ln(q/a) */
@@ -52,9 +53,10 @@ double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digit
     const double h = digits > 9 ? 0.125 : 0.25, negligible = digits > 9 ? 1e-18 : 1e-11;
     const double zeta2 = zeta * zeta, right = log1p(zeta2) / 2;
     double sum = 0, p = right + (digits > 9 ? 6.625 : 6.25);
-    for (int i = 0; i < 16384; i++, p -= h) {
+    const double end = log(alpha) - log(fmax(1, gamma)) / 2 - 45; /* y far below all widths of Q */
+    for (; p > end; p -= h) {
         const double e = exp(p - right - 3), y = exp(p + e), y2 = y * y, x = zeta2 + y2;
-        const double term = (1 + e) * survival_at(&q, x) * (y * (y2 / x));
+        const double term = (1 + e) * survival_at(&q, x) * (zeta2 > 0 ? y * (y2 / x) : y);
         sum += term;
         if (term < negligible * sum) break;
     }

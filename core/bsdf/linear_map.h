@@ -27,7 +27,7 @@ int MU(map_widen)(map *m, double alpha);
 /* u = M^T m, Eq. (13) and (14), in slope units: |u_xy|^2 and u_z^2. */
 static inline void map_normal(const map *m, const real n[3], real *r2, real *z2) {
     const real x = m->normal[0] * n[0] + m->normal[1] * n[1], y = m->normal[2] * n[0] + m->normal[3] * n[1];
-    *r2 = x * x + y * y;
+    *r2 = smaller(x * x + y * y, REAL_MAX / 16); /* saturates rather than overflow */
     *z2 = square(m->normal_z * n[2]);
 }
 

@@ -34,8 +34,10 @@ pair_values MU(mu_pair)(const closure *c, const real wi[3]) {
     (&c->surface->fresnel, smaller(sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) / 2, 1), out.F);
     out.G2 = 1;
     if (c->kernel) {
-        const real lambda = c->kernel->lambda(c, wi), scale = c->map.view_z;
-        out.G2 = scale * wi[2] * c->wo[2] / (wi[2] * c->sigma + c->wo[2] * lambda);
+        const real scale = c->map.view_z; /* quotients apart: products of cosines near 0 would underflow */
+        const real Lambda_i = c->kernel->lambda(c, wi) / scale / wi[2];
+        const real Lambda_o = c->kernel->lambda(c, c->wo) / scale / c->wo[2];
+        out.G2 = 1 / (1 + Lambda_o + Lambda_i);
     }
     return out;
 }

@@ -24,7 +24,9 @@ static inline real orientation(const map *m) {
 static inline real view_lambda(const closure *c, const real v[3]) {
     real w[3];
     map_view(&c->map, v, w);
-    return z_lambda(&c->surface->base, w[0] * w[0] + w[1] * w[1], w[2] * w[2], w[2]);
+    const real r2 =
+        smaller(w[0] * w[0] + w[1] * w[1], REAL_MAX / 16); /* M beyond linear_map.c's bounds saturates */
+    return z_lambda(&c->surface->base, r2, w[2] * w[2], w[2]);
 }
 
 static real lambda_of(const closure *c, const real v[3]) {

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * test_bsdf_gtr.c: GTR against the closed forms of its Smith Lambda at gamma = 0, 1, 2, 3, 4, where no
+ * quadrature is involved, and its table in float against double.
+ */
+#include "tests/bsdf_fixture.h"
+
+static const double alphas[] = {1e-4, 1e-3, 0.0121, 0.1, 0.3, 0.7, 0.95, 1 - 1e-6};
+static const double degrees[] = {0.01, 1, 20, 45, 70, 85, 89, 89.9, 89.99, 89.9999};
+enum { ALPHAS = sizeof alphas / sizeof alphas[0], DEGREES = sizeof degrees / sizeof degrees[0] };
+
+/* Cancellation-free forms of Eq. (35) to (39), with z = alpha² tan². */
+static double closed_form(int gamma, double alpha, double tau) {
+    const double a = alpha * alpha, z = a * tau * tau, s = sqrt(1 + z), one_a = (1 - alpha) * (1 + alpha);
+    const double l2 = z / (2 * (1 + s)), l3 = z * z / (8 * s * (1 + z / 2 + s));
+    const double p = 1 + 1.5 * z + 0.375 * z * z;
+    const double l4 = z * z * z * (0.125 + 9 * z / 64) / (2 * s * s * s * (p + s * s * s));
+    if (gamma == 0) return tau * tau / (2 * (1 + sqrt(1 + tau * tau)));
+    if (gamma == 1) {
+        const double big_a = s, big_b = sqrt(1 + tau * tau), d = one_a * tau * tau / (big_a + big_b);
+        return (d - log1p(d / (1 + big_a))) / (-2 * log(alpha));
+    }
+    if (gamma == 2) return l2;
+    if (gamma == 3) return (2 * a * l2 + one_a * l3) / (1 + a);
+    return (3 * a * a * l2 + 3 * a * one_a * l3 + one_a * one_a * l4) / (1 + a + a * a);
+}
+
+/* Relative 2e-12: at gamma = 1, D - log1p(D...) loses up to tau² for small tau; elsewhere the closed forms
+ * are good to a few units in the last place, and so must the quadrature be. */
+static void lambda_equals_the_closed_forms(void **state) {
+    (void)state;
+    bsdf b;
+    for (int gamma = 0; gamma <= 4; gamma++) {
+        for (int i = 0; i < ALPHAS; i++) {
+            for (int j = 0; j < DEGREES; j++) {
+                const double theta = degrees[j] * TEST_PI / 180, wo[3] = {sin(theta), 0, cos(theta)};
+                const double tau = wo[0] / wo[2];
+                const mu_definition d = bsdf_definition(MU_GTR, alphas[i], gamma, 1, 0, 0, 1);
+                bsdf_bind_double(&b, &d, wo);
+                const double loss = gamma == 1 ? 2e-16 / fmin(1, tau * tau * tau * tau) : 0;
+                bsdf_near(mu_view_d(&b.d, wo).Lambda, closed_form(gamma, alphas[i], tau), 2e-13 + loss);
+            }
+        }
+    }
+}
+
+/* Through the neighbours of the integers, where every formula that divides by gamma - k would break. */
+static void lambda_and_d_are_continuous_in_gamma(void **state) {
+    (void)state;
+    bsdf near, at;
+    const double m[3] = {0.28, 0, 0.96};
+    for (int gamma = 0; gamma <= 4; gamma++) {
+        for (int i = 0; i < ALPHAS; i++) {
+            const double wo[3] = {0.8, 0, 0.6};
+            const mu_definition d = bsdf_definition(MU_GTR, alphas[i], gamma, 1, 0, 0, 1);
+            bsdf_bind_double(&at, &d, wo);
+            for (double e = -1e-9; e <= 1e-9; e += 2e-9) {
+                if (gamma + e < 0) continue;
+                const mu_definition n = bsdf_definition(MU_GTR, alphas[i], gamma + e, 1, 0, 0, 1);
+                bsdf_bind_double(&near, &n, wo);
+                /* d ln D / d gamma is at most 2 ln(1/alpha) plus a constant: 25 for alpha = 1e-4 */
+                bsdf_near(mu_view_d(&near.d, wo).Lambda, mu_view_d(&at.d, wo).Lambda, 4e-8);
+                bsdf_near(mu_normal_d(&near.d, m).D, mu_normal_d(&at.d, m).D, 4e-8);
+            }
+        }
+    }
+}
+
+/* The table against the quadrature: G1 in float to 1e-6 everywhere, for alpha from 1e-4 to 1, gamma from 0
+ * to 10. */
+static void float_table_is_right(void **state) {
+    (void)state;
+    bsdf b;
+    double worst = 0, worst_alpha = 0, worst_gamma = 0, worst_degrees = 0;
+    for (double gamma = 0; gamma <= 10; gamma += 0.37) {
+        for (int i = 0; i < ALPHAS; i++) {
+            const mu_definition d = bsdf_definition(MU_GTR, alphas[i], gamma, 1, 0, 0, 1);
+            const double up[3] = {0, 0, 1};
+            bsdf_bind(&b, &d, up);
+            for (int j = 0; j < 40; j++) {
+                const double theta = atan(pow(10, -2 + 0.15 * j)); /* to 89.99 degrees and beyond */
+                const float wf[3] = {(float)sin(theta), 0, (float)cos(theta)};
+                const double w[3] = {(double)wf[0], 0, (double)wf[2]}; /* the very direction that float saw */
+                const double expected = 1 / (1 + mu_view_d(&b.d, w).Lambda),
+                             got = 1 / (1 + (double)mu_view_f(&b.f, wf).Lambda);
+                if (fabs(got - expected) <= worst) continue;
+                worst = fabs(got - expected), worst_alpha = alphas[i], worst_gamma = gamma,
+                worst_degrees = theta * 180 / TEST_PI;
+            }
+        }
+    }
+    print_message("worst G1 error of GTR in float: %.2g (alpha %g, gamma %g, %.3f degrees)\n", worst,
+                  worst_alpha, worst_gamma, worst_degrees);
+    assert_true(worst < 1e-6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lambda_equals_the_closed_forms),
+                                       cmocka_unit_test(lambda_and_d_are_continuous_in_gamma),
+                                       cmocka_unit_test(float_table_is_right)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * test_bsdf_transform.c: what a linear map must do to a microsurface, told without the core's own formulas.
+ * Tolerance 1e-12: a dozen double operations and inputs whose own rounding is amplified by M (condition below
+ * 100).
+ */
+#include "tests/bsdf_fixture.h"
+
+enum { CASES = 200 };
+static const double tolerance = 1e-12;
+
+static const struct {
+    mu_ndf ndf;
+    double alpha, gamma;
+} bases[] = {
+    {MU_GGX, 0.3, 2}, {MU_BECKMANN, 0.4, 2}, {MU_GTR, 0.2, 0.7}, {MU_GTR, 0.0121, 1.7}, {MU_GTR, 0.5, 4.5}};
+enum { BASES = sizeof bases / sizeof bases[0] };
+
+/* Eq. (7) and (8) with the classic D of Heitz 2014, for M = diag(alpha/alpha_x, alpha/alpha_y), Eq. (29). */
+static void equals_classic_anisotropy(void **state) {
+    (void)state;
+    uniform u = {1};
+    bsdf b;
+    for (int i = 0; i < CASES; i++) {
+        const double alpha = 0.3, ax = 0.05 + uniform_double(&u), ay = 0.05 + uniform_double(&u);
+        const mu_ndf ndf = i % 2 ? MU_GGX : MU_BECKMANN;
+        const mu_definition d = bsdf_definition(ndf, alpha, 2, alpha / ax, 0, 0, alpha / ay);
+        double wo[3], m[3];
+        bsdf_direction(0.05 + 0.95 * uniform_double(&u), 7 * uniform_double(&u), wo);
+        bsdf_direction(0.3 + 0.7 * uniform_double(&u), 7 * uniform_double(&u), m);
+        bsdf_bind_double(&b, &d, wo);
+        const double x = pow(m[0] / m[2] / ax, 2) + pow(m[1] / m[2] / ay, 2), cos4 = pow(m[2], 4);
+        const double expected = (ndf == MU_GGX ? 1 / pow(1 + x, 2) : exp(-x)) / (TEST_PI * ax * ay * cos4);
+        bsdf_near(mu_normal_d(&b.d, m).D, expected, tolerance * (1 + x));
+        const double at = hypot(ax * wo[0], ay * wo[1]) / wo[2], c = 1 / at;
+        const double lambda =
+            ndf == MU_GGX ? (sqrt(1 + at * at) - 1) / 2 : (exp(-c * c) / (c * sqrt(TEST_PI)) - erfc(c)) / 2;
+        bsdf_near(1 + mu_view_d(&b.d, wo).Lambda, 1 + lambda, tolerance);
+    }
+}
+
+static void turned(const double w[3], double phi, double out[3]) {
+    out[0] = cos(phi) * w[0] - sin(phi) * w[1], out[1] = sin(phi) * w[0] + cos(phi) * w[1], out[2] = w[2];
+}
+
+/* f, pdf and sigma under M at (wo, wi) equal those under R M at (R wo, R wi); R a rotation, or a mirror. */
+static void isometry_moves_with_the_surface(void **state) {
+    (void)state;
+    uniform u = {2};
+    for (int i = 0; i < CASES; i++) {
+        const int k = i % BASES, mirror = i % 3 == 0;
+        double m[4], wo[3], wi[3], to[3], ti[3];
+        bsdf a, b;
+        bsdf_random_map(&u, m);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wo);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wi);
+        const double phi = 7 * uniform_double(&u), c = cos(phi), s = sin(phi), sign = mirror ? -1 : 1;
+        turned(wo, phi, to), turned(wi, phi, ti);
+        to[0] *= sign, ti[0] *= sign;
+        const mu_definition d =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, m[0], m[1], m[2], m[3]);
+        const mu_definition e =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, sign * (c * m[0] - s * m[2]),
+                            sign * (c * m[1] - s * m[3]), s * m[0] + c * m[2], s * m[1] + c * m[3]);
+        mu_value_d x, y;
+        bsdf_bind_double(&a, &d, wo), bsdf_bind_double(&b, &e, to);
+        mu_eval_d(&a.d, wi, &x), mu_eval_d(&b.d, ti, &y);
+        bsdf_near(y.f[0], x.f[0],
+                  1e-9); /* Beckmann's exponent multiplies the rounding of the turned directions */
+        bsdf_near(y.pdf, x.pdf, 1e-9);
+        bsdf_near(y.pdf_reverse, x.pdf_reverse, 1e-9);
+        bsdf_near(mu_view_d(&b.d, to).sigma, mu_view_d(&a.d, wo).sigma, tolerance);
+    }
+}
+
+/* Stretching a shape-invariant surface q times is dividing its roughness by q, from 1e-12 to 1e12. */
+static void scale_trades_with_roughness(void **state) {
+    (void)state;
+    uniform u = {3};
+    for (int i = 0; i < CASES; i++) {
+        const double q = pow(10, 24 * uniform_double(&u) - 12);
+        double m[4], wo[3], wi[3];
+        bsdf a, b;
+        bsdf_random_map(&u, m);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wo);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wi);
+        const mu_ndf ndf = i % 2 ? MU_GGX : MU_BECKMANN;
+        const mu_definition d = bsdf_definition(ndf, 0.5, 2, m[0], m[1], m[2], m[3]);
+        const mu_definition e = bsdf_definition(ndf, 0.5 * q, 2, q * m[0], q * m[1], q * m[2], q * m[3]);
+        mu_value_d x, y;
+        bsdf_bind_double(&a, &d, wo), bsdf_bind_double(&b, &e, wo);
+        mu_eval_d(&a.d, wi, &x), mu_eval_d(&b.d, wi, &y);
+        bsdf_near(y.f[0], x.f[0], 1e-10);
+        bsdf_near(y.pdf, x.pdf, 1e-10);
+    }
+}
+
+/* Reciprocity: f(wo, wi) = f(wi, wo), and the two pdfs change places. */
+static void is_reciprocal(void **state) {
+    (void)state;
+    uniform u = {4};
+    for (int i = 0; i < CASES; i++) {
+        const int k = i % BASES;
+        double m[4], wo[3], wi[3];
+        bsdf a, b;
+        bsdf_random_map(&u, m);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wo);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wi);
+        const mu_definition d =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, m[0], m[1], m[2], m[3]);
+        mu_value_d x, y;
+        bsdf_bind_double(&a, &d, wo), bsdf_bind_double(&b, &d, wi);
+        mu_eval_d(&a.d, wi, &x), mu_eval_d(&b.d, wo, &y);
+        bsdf_near(y.f[0], x.f[0], tolerance);
+        bsdf_near(y.pdf_reverse, x.pdf, tolerance);
+        bsdf_near(y.pdf, x.pdf_reverse, tolerance);
+    }
+}
+
+/* Eq. (3): D_M cos integrates to 1, by a midpoint rule in the slope plane whose angle and log radius are
+ * periodic or decay: here to 1e-6 (the tail beyond slope 1e4 of the heaviest base). */
+static void is_normalised(void **state) {
+    (void)state;
+    uniform u = {5};
+    for (int i = 0; i < 2 * BASES; i++) {
+        const int k = i % BASES;
+        double m[4], wo[3] = {0, 0, 1}, sum = 0;
+        bsdf b;
+        bsdf_random_map(&u, m);
+        const mu_definition d =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, m[0], m[1], m[2], m[3]);
+        bsdf_bind_double(&b, &d, wo);
+        const double step = 0.05, angle = TEST_PI / 128;
+        for (double s = -14; s < 12; s += step) {
+            for (int j = 0; j < 256; j++) {
+                const double r = exp(s), length = sqrt(1 + r * r);
+                const double n[3] = {r * cos(j * angle) / length, r * sin(j * angle) / length, 1 / length};
+                sum += mu_normal_d(&b.d, n).D * pow(n[2], 4) * r * r * step * angle; /* P22, Eq. (4) */
+            }
+        }
+        bsdf_near(sum, 1, 1e-6);
+    }
+}
+
+static void refuses_singular_maps(void **state) {
+    (void)state;
+    mu_complaint why;
+    static const double bad[][4] = {{0, 0, 0, 0}, {1, 2, 2, 4}, {1, 0, 0, NAN}, {INFINITY, 0, 0, 1}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        const mu_definition d = bsdf_definition(MU_GGX, 0.3, 2, bad[i][0], bad[i][1], bad[i][2], bad[i][3]);
+        assert_false(mu_definition_check(&d, &why));
+        assert_string_equal(why.field, "transform");
+        const mu_definition good = mu_definition_default();
+        const double up[3] = {0, 0, 1};
+        bsdf b;
+        bsdf_bind_double(&b, &good, up);
+        assert_false(mu_bind_d(b.d.surface, up, bad[i], &b.d));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_classic_anisotropy),
+                                       cmocka_unit_test(isometry_moves_with_the_surface),
+                                       cmocka_unit_test(scale_trades_with_roughness),
+                                       cmocka_unit_test(is_reciprocal),
+                                       cmocka_unit_test(is_normalised),
+                                       cmocka_unit_test(refuses_singular_maps)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

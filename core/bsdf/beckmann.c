@@ -26,7 +26,7 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
     slope_normal(sqrt(-log1p(-u[0])), 1, u[1], n);
 }
 
-/* One GGX of the same peak proposes, exp(-X) (1 + X)² e/4 accepts: at least 0.39 of the normals, so that 128
+/* One GGX of the same peak proposes, exp(-X) (1 + X)² e/4 accepts: at least 0.38 of the normals, so that 128
  * in vain have probability below 1e-27. Not in the paper. */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     random_stream more = random_start(u);

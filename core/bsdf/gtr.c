@@ -62,7 +62,7 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
 }
 
 /* gamma < 2: one GGX of the mixture, then its cap. gamma >= 2: one GGX of the same peak proposes, and at
- * least 0.39 of the normals are accepted. Both loops are bounded: 128 in vain have probability below 1e-27.
+ * least 0.38 of the normals are accepted. Both loops are bounded: 128 in vain have probability below 1e-27.
  * Not in the paper. */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     const real *g = b->shape, unit = g[GTR_UNIT];

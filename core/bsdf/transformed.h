@@ -74,7 +74,8 @@ static void eval(const closure *c, const real wi[3], value *out) {
     for (int k = 0; k < 3; k++) out->f[k] = F[k] * f;
     const real sigma_i = scale * wi[2] + lambda_i;
     if (MUTANT(5, 1, c->surface->sampler == MU_SAMPLE_NDF)) {
-        out->pdf = out->pdf_reverse = smaller(quarter_d * (h[2] / (sqrt(h2) * cosine)), saturated);
+        out->pdf = out->pdf_reverse =
+            smaller(quarter_d * smaller(h[2] / (sqrt(h2) * cosine), saturated), saturated);
     } else {
         out->pdf = smaller(quarter_d * (scale / larger(c->sigma, REAL_MIN)), saturated);
         out->pdf_reverse = smaller(quarter_d * (scale / larger(sigma_i, REAL_MIN)), saturated);

@@ -52,13 +52,15 @@ double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digit
     const survival q = survival_make(alpha, gamma);
     const double h = digits > 9 ? 0.125 : 0.25, negligible = digits > 9 ? 1e-18 : 1e-11;
     const double zeta2 = zeta * zeta, right = log1p(zeta2) / 2;
+    if (survival_at(&q, zeta2) == 0)
+        return 0; /* Q falls with x: large gamma, small alpha underflow throughout */
     double sum = 0, p = right + (digits > 9 ? 6.625 : 6.25);
     const double end = log(alpha) - log(fmax(1, gamma)) / 2 - 45; /* y far below all widths of Q */
     for (; p > end; p -= h) {
         const double e = exp(p - right - 3), y = exp(p + e), y2 = y * y, x = zeta2 + y2;
         const double term = (1 + e) * survival_at(&q, x) * (zeta2 > 0 ? y * (y2 / x) : y);
         sum += term;
-        if (term < negligible * sum) break;
+        if (sum > 0 ? term <= negligible * sum : y2 < 1e-30 * zeta2) break; /* below zeta terms only fall */
     }
     return r / PI * h * sum;
 }

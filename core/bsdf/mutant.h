@@ -2,10 +2,15 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * mutant.h: known mistakes, so that the tests can be tested. Compiled with -DMUSURF_MUTANT=n, mutant n
- * replaces the right expression by a wrong one; the default, 0, compiles to the right ones at no cost. 1 |det
- * M| dropped from Eq. (22)          5 the pdf of D cos returned for visible-normal sampling 2 M where M^-1
- * belongs, Eq. (12)         6 det M without its absolute value, Eq. (22) 3 1/|M^T m|^4 forgotten in Eq. (22)
- * 7 M m for M^T m, Eq. (13) 4 G1(wo) in place of G2                  8 sampling weight without 1/G1
+ * replaces the right expression by a wrong one; the default, 0, compiles to the right ones at no cost.
+ * - 1: |det M| dropped from Eq. (22)
+ * - 2: M where M^-1 belongs, Eq. (12)
+ * - 3: 1/|M^T m|^4 forgotten in Eq. (22)
+ * - 4: G1(wo) in place of G2
+ * - 5: the pdf of D cos returned for visible-normal sampling
+ * - 6: det M without its absolute value, Eq. (22)
+ * - 7: M m for M^T m, Eq. (13)
+ * - 8: sampling weight without 1/G1
  */
 #ifndef MU_MUTANT_H
 #define MU_MUTANT_H

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * ierfc.h: the integral of the complementary error function, ierfc(c) = exp(-c²)/sqrt(pi) - c erfc(c), c >=
- * 0.
+ * ierfc.h: the integral of erfc from c to infinity, ierfc(c) = exp(-c²)/sqrt(pi) - c erfc(c), for c >= 0.
  *
  * That difference loses all digits as c grows. With t = 3/(3 + c), ierfc(c) exp(c²) / t² is smooth on [0, 1]
  * and between 0.03 and 0.56: a Chebyshev series in 2t - 1, whose terms fall below 1e-8 after 14 and below
  * 1e-18 after 27. Coefficients: discrete cosine transform of 80 points of the definition in 60-digit
- * arithmetic (mpmath). Relative error below 4 units in the last place, besides what exp(-c²) does to a
- * rounded c.
+ * arithmetic (mpmath). Measured relative error against mpmath, c from 1e-6 to 24: below 7 (1 + c²) roundings,
+ * the c² being what exp makes of a rounded square.
  */
 #ifndef MU_IERFC_H
 #define MU_IERFC_H

@@ -69,8 +69,8 @@ def compare(precision, lines, answers):
             if error / allowed > worst.get(name, (-1,))[0]:
                 worst[name] = (error / allowed, error, line["id"])
             if error > allowed:
-                failures.append(f"{line['id']}: {key} = {number!r}, exactly {line['expect'][key]}: off by {error:.3g}, "
-                                f"allowed {allowed:.3g}")
+                failures.append(f"{line['id']}: {key} = {number!r}, exactly {line['expect'][key]}: "
+                                f"off by {error:.3g}, allowed {allowed:.3g}")
     print(f"{precision}: {compared} values compared ({sharp} of them to better than {10 * base:g}), {undetermined} that their inputs do not determine")
     for name, (ratio, error, where) in sorted(worst.items()):
         print(f"  {name:7} worst {ratio:8.4f} of what is allowed, relative error {error:.2e}, at {where}")

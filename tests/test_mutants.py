@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""The tests, tested: wrong versions of the core must each be rejected by at least one check, the right one by none.
+
+core/bsdf/mutant.h holds the mistakes. For each, core and plugin alone are built again below $BUILD/mutants/n, and the fast
+checks run with that plugin. Prints which check rejects which mutant.
+"""
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / os.environ.get("BUILD", "build")
+
+
+def mutants():
+    """Number and description, from the comment in mutant.h that defines them."""
+    text = (ROOT / "core/bsdf/mutant.h").read_text()
+    return {int(number): words for number, words in re.findall(r"^ \* - ([1-9]): (.*)$", text, re.M)}
+
+
+def environment(**extra):
+    """Without what an outer make would pass down."""
+    return {**{key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "BUILD")},
+            **extra}
+
+
+def build(number):
+    """The folder of the mutant's plugin; 0 is the plugin as built."""
+    if number == 0:
+        return BUILD
+    folder = BUILD / "mutants" / str(number)
+    shutil.rmtree(folder, ignore_errors=True)
+    # what does not read mutant.h is copied as built, if built without sanitizers; make compiles the rest again
+    plain = not re.search(rb"__[atu]b?san_", (BUILD / "musurf_material.so").read_bytes())
+    for room in ("core/bsdf", "plugin") if plain else ():
+        for made in (BUILD / "obj" / room).glob("*.o"):
+            rules = made.with_suffix(".d")
+            if not rules.exists() or "mutant.h" in rules.read_text():
+                continue
+            there = folder / "obj" / room / made.name
+            there.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(made, there)
+    done = subprocess.run(["make", "--no-print-directory", f"BUILD={folder}", f"{folder}/musurf_material.so"], cwd=ROOT,
+                          env=environment(CPPFLAGS=f"-DMUSURF_MUTANT={number}", OPTIMISE="-O1"), capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"mutant {number} does not build:\n{done.stderr[-2000:]}")
+    shutil.copy(BUILD / "template_material.so", folder)  # for the tests that open both
+    return folder
+
+
+def musurf_check(folder):
+    return [BUILD / "musurf", "check", "--quick"], {"BUILD": str(BUILD), "MUSURF_PLUGIN_PATH": str(folder)}
+
+
+def reference(folder):
+    return ([sys.executable, ROOT / "tests/test_reference.py", "--quick"],
+            {"BUILD": str(BUILD), "MUSURF_PLUGIN_PATH": str(folder)})
+
+
+def contract(folder):
+    return [BUILD / "tests/test_abi_shading"], {"BUILD": str(folder)}
+
+
+CHECKS = {"reference": reference, "contract": contract, "check": musurf_check}
+
+
+def rejects(check, folder):
+    command, extra = CHECKS[check](folder)
+    done = subprocess.run([str(word) for word in command], cwd=ROOT, env=environment(**extra), stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=600)
+    if done.returncode not in (0, 1) and not (check == "contract" and 0 < done.returncode < 100):
+        sys.exit(f"{check} did not run: exit {done.returncode}\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
+    return done.returncode != 0
+
+
+def main():
+    known = mutants()
+    if sorted(known) != list(range(1, len(known) + 1)) or len(known) < 5:
+        sys.exit(f"mutants could not be read from core/bsdf/mutant.h: {known}")
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        folders = dict(zip([0, *known], pool.map(build, [0, *known])))
+        jobs = [(number, check) for number in folders for check in CHECKS]
+        killed = dict(zip(jobs, pool.map(lambda job: rejects(job[1], folders[job[0]]), jobs)))
+    width = max(map(len, known.values()))
+    print(f"{'mutant':{width + 3}}" + "".join(f"{check:>11}" for check in CHECKS))
+    good = True
+    for number in folders:
+        row = [killed[number, check] for check in CHECKS]
+        good &= any(row) == (number > 0)
+        print(f"{number:2} {known.get(number, '(none)'):{width}}" + "".join(f"{'killed' if hit else '-':>11}" for hit in row)
+              + ("" if any(row) == (number > 0) else "   WRONG"))
+    print("every mutant is killed, the right core is not" if good else "FAILED: a mutant lives, or the right core is rejected")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

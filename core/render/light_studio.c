@@ -6,7 +6,7 @@
  * Metal shows what it reflects: broad boxes give it body, narrow bright strips the crisp lines that
  * anisotropy stretches, and the dark between them its contrast. Each box is a rectangle in the plane tangent
  * to the unit sphere at its middle (gnomonic), with edges that fade smoothly, a little brighter inside, as
- * real ones are. Radiance, +z up, azimuths counter-clockwise from +x; positive everywhere.
+ * real ones are. Scaled so that a white plate lying in it comes out just short of white. Radiance, +z up, azimuths counter-clockwise from +x; positive everywhere.
  */
 #include "core/render/light_parts.h"
 
@@ -27,7 +27,7 @@ static const mu_soft_box boxes[] = {
      {0.50f, 0.32f},
      0.10f,
      0.80f,
-     {9.0f, 8.6f, 8.0f}},
+     {3.0f, 2.87f, 2.67f}},
     /* fill: wide, dim, cool, a = 165, e = 22 */
     {{-0.89559083f, 0.23997284f, 0.37460659f},
      {-0.25881905f, -0.96592583f, 0},
@@ -35,7 +35,7 @@ static const mu_soft_box boxes[] = {
      {0.55f, 0.38f},
      0.18f,
      0.73f,
-     {1.5f, 1.7f, 2.0f}},
+     {0.5f, 0.57f, 0.67f}},
     /* strip: tall, narrow and bright, a = -70, e = 25 */
     {{0.30997552f, -0.85165074f, 0.42261826f},
      {0.93969262f, 0.34202014f, 0},
@@ -43,7 +43,7 @@ static const mu_soft_box boxes[] = {
      {0.09f, 0.75f},
      0.05f,
      0.77f,
-     {14.0f, 14.0f, 14.5f}},
+     {5.0f, 5.0f, 5.2f}},
     /* second strip, behind, a = -125, e = 35 */
     {{-0.46984631f, -0.67101007f, 0.57357644f},
      {0.81915204f, -0.57357644f, 0},
@@ -51,7 +51,7 @@ static const mu_soft_box boxes[] = {
      {0.06f, 0.60f},
      0.04f,
      0.83f,
-     {10.0f, 9.6f, 9.0f}},
+     {3.6f, 3.45f, 3.25f}},
     /* overhead: broad, a = 0, e = 85 */
     {{0.08715574f, 0, 0.99619470f},
      {0, 1, 0},
@@ -59,7 +59,7 @@ static const mu_soft_box boxes[] = {
      {0.45f, 0.28f},
      0.15f,
      0.80f,
-     {3.6f, 3.7f, 3.9f}},
+     {1.2f, 1.23f, 1.3f}},
 };
 
 /* 0 below -width, 1 above 0, with continuous slope. */
@@ -69,8 +69,8 @@ static float fade(float inside, float width) {
 }
 
 void mu_studio_radiance(mu_vec3 direction, float radiance[3]) {
-    static const float floor_colour[3] = {0.055f, 0.050f, 0.046f}, horizon[3] = {0.34f, 0.35f, 0.37f},
-                       ceiling[3] = {0.11f, 0.12f, 0.14f};
+    static const float floor_colour[3] = {0.03f, 0.028f, 0.026f}, horizon[3] = {0.16f, 0.165f, 0.175f},
+                       ceiling[3] = {0.05f, 0.055f, 0.065f};
     /* A glow along the horizon, falling off faster into the floor, continuous with its slope at z = 0. */
     const float z = direction.z, glow = z < 0 ? expf(-24 * z * z) : expf(-5 * z * z);
     for (int c = 0; c < 3; c++) {

@@ -98,20 +98,20 @@ class Render(unittest.TestCase):
         self.assertNotEqual(one["R"].tobytes(), seeded["R"].tobytes())
 
     def test_resumed_render_is_the_uninterrupted_one(self):
-        _, whole = self.image("whole.exr", "--spp", "256", "--threads", "2")
+        _, whole = self.image("whole.exr", "--spp", "2048", "--threads", "2")
         out = self.path("out.exr")
         pathlib.Path(out).write_bytes(b"precious")
-        arguments = ["-o", out, "--spp", "256"]
+        arguments = ["-o", out, "--spp", "2048"]
         self.assertEqual(self.interrupt_at(0.1, signal.SIGINT, *arguments, "--threads", "1"), 130)
         self.assertEqual(pathlib.Path(out).read_bytes(), b"precious")
         header, partial = exr.read(self.path("out.partial.exr"))
         least = int(partial["samples"].min())
         self.assertEqual(header["samples"], least)
-        self.assertTrue(0 < least < 256)
+        self.assertTrue(0 < least < 2048)
         self.assertTrue(numpy.isfinite(partial["R"]).all())
         self.assertEqual(self.interrupt_at(0.4, signal.SIGTERM, *arguments, "--threads", "3", "--resume"), 130)
         self.assertEqual(self.files(), ["out.exr", "out.partial.exr", "out.resume", "scene.json", "whole.exr"])
-        _, resumed = self.image("out.exr", "--spp", "256", "--resume", "--threads", "2")
+        _, resumed = self.image("out.exr", "--spp", "2048", "--resume", "--threads", "2")
         self.assert_same(whole, resumed)
         self.assertEqual(self.files(), ["out.exr", "scene.json", "whole.exr"])
 

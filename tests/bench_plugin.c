@@ -213,8 +213,10 @@ int main(void) {
     for (int r = 0; r < COUNT; r++) {
         const double ns = median(rows[r].ns), ratio = median(rows[r].ratio);
         printf("%-28s %8.1f %8.2f", rows[r].label, ns, ratio);
-        if (rows[r].goal > 0)
+        if (rows[r].goal > 0) {
             printf(" %8.1f  %s", rows[r].goal, ratio <= rows[r].goal ? "reached" : "MISSED");
+            missed |= ratio > rows[r].goal;
+        }
         printf("\n");
         type->release(rows[r].material);
     }

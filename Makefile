@@ -86,6 +86,7 @@ asan ubsan: deps
 	    SANITIZE='-fno-omit-frame-pointer -fsanitize=$(if $(filter asan,$@),address,undefined -fno-sanitize-recover=all)' run-test
 tsan: deps
 	@mkdir -p $(BUILD)/$@ && ln -sfn ../venv $(BUILD)/$@/venv && touch $(BUILD)/$@/.installed
+	TSAN_OPTIONS=suppressions=$(abspath tests/tsan.supp) \
 	$(MAKE) BUILD=$(BUILD)/$@ OPTIMISE='-O1 -g' SANITIZE='-fsanitize=thread' ONLY='$(or $(ONLY),abi render)' run-test
 
 help:

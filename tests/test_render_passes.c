@@ -37,8 +37,8 @@ typedef struct world {
 } world;
 
 /* Values over twelve orders of magnitude: any other order of summation gives other bits. */
-static void sample(const void *context, uint64_t seed, uint32_t x, uint32_t y, uint32_t index, void *scratch,
-                   mu_radiance *out) {
+static void sample_pixel(const void *context, uint64_t seed, uint32_t x, uint32_t y, uint32_t index,
+                         void *scratch, mu_radiance *out) {
     world *w = (world *)(uintptr_t)context;
     const uint64_t h = hash(hash(hash(hash(seed) + x) + y) + index);
     memset(scratch, (int)h, 100); /* a thread's own, or the thread sanitizer objects */
@@ -52,6 +52,12 @@ static void sample(const void *context, uint64_t seed, uint32_t x, uint32_t y, u
     out->hit = h >> 63;
     atomic_fetch_add(&w->calls, 1);
     if (w->slow_nanoseconds) nanosleep(&(struct timespec){.tv_nsec = (long)w->slow_nanoseconds}, NULL);
+}
+
+static void sample(const void *context, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t index,
+                   void *scratch, mu_radiance *out) {
+    assert_in_range(count, 1, MU_PACKET);
+    for (uint32_t i = 0; i < count; i++) sample_pixel(context, seed, x + i, y, index, scratch, &out[i]);
 }
 
 static _Bool stop(void *context) {
@@ -111,7 +117,7 @@ static void assert_is_sum(const mu_film *film) {
         mu_pixel expected = {.samples = 0};
         for (uint32_t s = 0; s < film->pixels[i].samples; ++s) {
             mu_radiance one = {.rays = 0};
-            sample(&w, 11, i % WIDTH, i / WIDTH, s, scratch, &one);
+            sample_pixel(&w, 11, i % WIDTH, i / WIDTH, s, scratch, &one);
             mu_pixel_add(&expected, &one);
             rays += one.rays;
         }

@@ -170,7 +170,7 @@ static void test_nothing_broken_reaches_the_film(void **state) {
     uint32_t refused = 0;
     for (uint32_t sample = 0; sample < 16; sample++) {
         mu_radiance out;
-        mu_integrator_path(&f.tracer, 9, 0, 0, sample, f.scratch, &out);
+        mu_integrator_row(&f.tracer, 9, 0, 0, 1, sample, f.scratch, &out);
         assert_true(out.rgb[0] == 0 && out.rgb[1] == 0 && out.rgb[2] == 0);
         refused += out.refused;
     }

@@ -129,9 +129,9 @@ static mu_image_info info(const mu_job *job) {
 /* ------------------------------------------------------------------------------------------------ rendering
  */
 
-static void sample(const void *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t index, void *scratch,
-                   mu_radiance *out) {
-    mu_integrator_path(tracer, seed, x, y, index, scratch, out);
+static void sample(const void *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t index,
+                   void *scratch, mu_radiance *out) {
+    mu_integrator_row(tracer, seed, x, y, count, index, scratch, out);
 }
 
 static _Bool stop(void *job) {

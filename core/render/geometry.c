@@ -146,6 +146,8 @@ mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error
         return NULL;
     }
     rtcSetDeviceErrorFunction(geometry->device, note, &embree);
+    geometry->packets =
+        rtcGetDeviceProperty(geometry->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
     geometry->top = rtcNewScene(geometry->device);
     rtcSetSceneFlags(geometry->top, RTC_SCENE_FLAG_ROBUST);
     if (allocate(geometry, error) && fill(geometry, error)) rtcCommitScene(geometry->top);
@@ -172,6 +174,17 @@ void mu_geometry_free(mu_geometry *geometry) {
     free(geometry);
 }
 
+/* What Embree found, as a hit of the scene. */
+static void fill_hit(const mu_geometry *geometry, const mu_ray *ray, const struct RTCHit *embree,
+                     float distance, mu_hit *hit) {
+    const _Bool instance = embree->instID[0] != RTC_INVALID_GEOMETRY_ID;
+    const mu_part *part = &geometry->parts[instance ? embree->instID[0] : embree->geomID];
+    mu_found found = {part->object, embree->primID, embree->u, embree->v, distance, instance};
+    if (part->kind == MU_PART_RECTANGLES) found.object = geometry->rectangles[embree->primID];
+    if (part->kind == MU_PART_SPHERES) found.object = geometry->spheres[embree->primID];
+    mu_hit_fill(geometry, ray, &found, hit);
+}
+
 static struct RTCRay embree_ray(const mu_ray *ray) {
     return (struct RTCRay){.org_x = ray->origin.x,
                            .org_y = ray->origin.y,
@@ -191,13 +204,7 @@ _Bool mu_geometry_intersect(const mu_geometry *geometry, const mu_ray *ray, mu_h
     rtcInitIntersectContext(&context);
     rtcIntersect1(geometry->top, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return 0;
-
-    const _Bool instance = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-    const mu_part *part = &geometry->parts[instance ? query.hit.instID[0] : query.hit.geomID];
-    mu_found found = {part->object, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, instance};
-    if (part->kind == MU_PART_RECTANGLES) found.object = geometry->rectangles[query.hit.primID];
-    if (part->kind == MU_PART_SPHERES) found.object = geometry->spheres[query.hit.primID];
-    mu_hit_fill(geometry, ray, &found, hit);
+    fill_hit(geometry, ray, &query.hit, query.ray.tfar, hit);
     return 1;
 }
 
@@ -207,6 +214,76 @@ _Bool mu_geometry_occluded(const mu_geometry *geometry, const mu_ray *ray) {
     rtcInitIntersectContext(&context);
     rtcOccluded1(geometry->top, &context, &query);
     return query.tfar < 0;
+}
+
+static void embree_packet(const mu_ray *rays, uint32_t active, int *valid, struct RTCRay8 *packet) {
+    memset(packet, 0, sizeof *packet);
+    for (int i = 0; i < MU_PACKET; ++i) {
+        valid[i] = active >> i & 1 ? -1 : 0;
+        if (!valid[i]) continue;
+        packet->org_x[i] = rays[i].origin.x;
+        packet->org_y[i] = rays[i].origin.y;
+        packet->org_z[i] = rays[i].origin.z;
+        packet->tnear[i] = rays[i].near;
+        packet->dir_x[i] = rays[i].direction.x;
+        packet->dir_y[i] = rays[i].direction.y;
+        packet->dir_z[i] = rays[i].direction.z;
+        packet->tfar[i] = rays[i].far;
+        packet->mask[i] = 0xffffffffu;
+    }
+}
+
+static void start_coherent(struct RTCIntersectContext *context) {
+    rtcInitIntersectContext(context);
+    context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+}
+
+uint32_t mu_geometry_intersect_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET],
+                                      uint32_t active, mu_hit hits[MU_PACKET]) {
+    uint32_t met = 0;
+    if (!geometry->packets) {
+        for (int i = 0; i < MU_PACKET; ++i)
+            if (active >> i & 1 && mu_geometry_intersect(geometry, &rays[i], &hits[i])) met |= 1u << i;
+        return met;
+    }
+    struct RTCIntersectContext context;
+    struct RTCRayHit8 query;
+    _Alignas(32) int valid[MU_PACKET];
+    embree_packet(rays, active, valid, &query.ray);
+    memset(query.hit.geomID, 0xff, sizeof query.hit.geomID); /* RTC_INVALID_GEOMETRY_ID */
+    memset(query.hit.instID, 0xff, sizeof query.hit.instID);
+    start_coherent(&context);
+    rtcIntersect8(valid, geometry->top, &context, &query);
+    for (int i = 0; i < MU_PACKET; ++i) {
+        if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        const struct RTCHit one = {.u = query.hit.u[i],
+                                   .v = query.hit.v[i],
+                                   .primID = query.hit.primID[i],
+                                   .geomID = query.hit.geomID[i],
+                                   .instID = {query.hit.instID[0][i]}};
+        fill_hit(geometry, &rays[i], &one, query.ray.tfar[i], &hits[i]);
+        met |= 1u << i;
+    }
+    return met;
+}
+
+uint32_t mu_geometry_occluded_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET],
+                                     uint32_t active) {
+    uint32_t met = 0;
+    if (!geometry->packets) {
+        for (int i = 0; i < MU_PACKET; ++i)
+            if (active >> i & 1 && mu_geometry_occluded(geometry, &rays[i])) met |= 1u << i;
+        return met;
+    }
+    struct RTCIntersectContext context;
+    struct RTCRay8 query;
+    _Alignas(32) int valid[MU_PACKET];
+    embree_packet(rays, active, valid, &query);
+    start_coherent(&context);
+    rtcOccluded8(valid, geometry->top, &context, &query);
+    for (int i = 0; i < MU_PACKET; ++i)
+        if (valid[i] && query.tfar[i] < 0) met |= 1u << i;
+    return met;
 }
 
 void mu_geometry_bounds(const mu_geometry *geometry, mu_vec3 *min, mu_vec3 *max) {

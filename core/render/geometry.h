@@ -30,6 +30,15 @@ mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error
 void mu_geometry_free(mu_geometry *geometry);
 _Bool mu_geometry_intersect(const mu_geometry *geometry, const mu_ray *ray, mu_hit *hit);
 _Bool mu_geometry_occluded(const mu_geometry *geometry, const mu_ray *ray);
+
+/* Up to MU_PACKET rays that run alike, together: a row of camera rays, their shadow rays. Ray i takes part if bit i of
+ * `active` is set; bit i of the answer tells that it met something, and then hits[i] is filled. The last bits of a
+ * hit may depend on which rays share the packet: who wants the same picture again forms the same packets again. */
+enum { MU_PACKET = 8 };
+uint32_t mu_geometry_intersect_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET], uint32_t active,
+                                      mu_hit hits[MU_PACKET]);
+uint32_t mu_geometry_occluded_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET], uint32_t active);
+
 /* The ray that leaves `hit` toward `direction` without meeting the surface it left: offset along ng by a bound on
  * the rounding error of p. */
 mu_ray mu_geometry_leave(const mu_hit *hit, mu_vec3 direction, float far);

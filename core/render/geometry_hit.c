@@ -80,6 +80,7 @@ static void on_sphere(const mu_object *object, const mu_map *map, const mu_ray *
     local->t = mu_d3(-sine, cosine, 0);
     local->dpdu = mu_dscale(local->t, 2 * pi * r * rho);
     local->dpdv = mu_dscale(mu_d3(-n.z * cosine, -n.z * sine, rho), pi * r);
+    local->edge = local->test = 0;
 }
 
 static mu_dvec3 blend(const float *values, size_t stride, const uint32_t *corner, const double *weight) {
@@ -103,6 +104,8 @@ static void on_triangle(const mu_mesh *mesh, const mu_map *map, const mu_found *
             local->ng = mu_dscale(local->ng, -1);
         local->n = blend(mesh->normals, 3, corner, weight);
     }
+    local->u = local->v = 0;
+    local->dpdu = local->dpdv = mu_d3(0, 0, 0);
     if (mesh->uvs) {
         const float *a = mesh->uvs + 2 * (size_t)corner[0], *b = mesh->uvs + 2 * (size_t)corner[1],
                     *c = mesh->uvs + 2 * (size_t)corner[2];
@@ -155,10 +158,13 @@ static _Bool on_grid(const mu_grid *grid, double u, double v) {
 void mu_hit_fill(const struct mu_geometry *geometry, const mu_ray *ray, const mu_found *found, mu_hit *hit) {
     const mu_object *object = &geometry->scene->objects[found->object];
     const mu_map *map = &geometry->maps[found->object];
-    mu_local local = {0};
-    if (object->shape == MU_RECTANGLE) on_rectangle(object, map, found, &local);
-    if (object->shape == MU_SPHERE) on_sphere(object, map, ray, found, &local);
-    if (object->shape == MU_MESH) on_triangle(&geometry->scene->meshes[object->mesh], map, found, &local);
+    mu_local local; /* each shape fills all of it */
+    if (object->shape == MU_RECTANGLE)
+        on_rectangle(object, map, found, &local);
+    else if (object->shape == MU_SPHERE)
+        on_sphere(object, map, ray, found, &local);
+    else
+        on_triangle(&geometry->scene->meshes[object->mesh], map, found, &local);
 
     const mu_dvec3 p = mu_map_point(map, local.p);
     const mu_dvec3 ng = mu_dnormalise(mu_map_normal(map, local.ng));

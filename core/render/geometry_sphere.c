@@ -48,25 +48,62 @@ static double meet(const struct mu_geometry *geometry, uint32_t index, const str
     return second > near && second < far ? second : -1;
 }
 
-/* Only single rays are ever traced (rtcIntersect1, rtcOccluded1), so N is 1 and RTCRayHitN is an RTCRayHit.
- */
+/* Embree hands over N rays as arrays of N numbers, field after field; its accessors for that are C++ only.
+ * Fields of RTCRayHitN, in the order of RTCRay and RTCHit. */
+enum {
+    ORG_X,
+    ORG_Y,
+    ORG_Z,
+    TNEAR,
+    DIR_X,
+    DIR_Y,
+    DIR_Z,
+    TFAR = 8,
+    HIT_U = 15,
+    HIT_V,
+    PRIM_ID,
+    GEOM_ID,
+    INST_ID
+};
+
+static struct RTCRay lane(const float *rays, unsigned n, unsigned i) {
+    return (struct RTCRay){.org_x = rays[ORG_X * n + i],
+                           .org_y = rays[ORG_Y * n + i],
+                           .org_z = rays[ORG_Z * n + i],
+                           .tnear = rays[TNEAR * n + i],
+                           .dir_x = rays[DIR_X * n + i],
+                           .dir_y = rays[DIR_Y * n + i],
+                           .dir_z = rays[DIR_Z * n + i],
+                           .tfar = rays[TFAR * n + i]};
+}
+
 static void intersect(const struct RTCIntersectFunctionNArguments *args) {
-    struct RTCRayHit *ray = (struct RTCRayHit *)args->rayhit;
     const struct mu_geometry *geometry = args->geometryUserPtr;
-    if (!args->valid[0]) return;
-    const double t = meet(geometry, geometry->spheres[args->primID], &ray->ray);
-    if (t < 0) return;
-    ray->ray.tfar = (float)t;
-    ray->hit.u = ray->hit.v = 0;
-    ray->hit.primID = args->primID;
-    ray->hit.geomID = args->geomID;
-    ray->hit.instID[0] = args->context->instID[0];
+    const unsigned n = args->N;
+    float *number = (float *)args->rayhit;
+    unsigned *id = (unsigned *)args->rayhit;
+    for (unsigned i = 0; i < n; ++i) {
+        if (!args->valid[i]) continue;
+        const struct RTCRay ray = lane(number, n, i);
+        const double t = meet(geometry, geometry->spheres[args->primID], &ray);
+        if (t < 0) continue;
+        number[TFAR * n + i] = (float)t;
+        number[HIT_U * n + i] = number[HIT_V * n + i] = 0;
+        id[PRIM_ID * n + i] = args->primID;
+        id[GEOM_ID * n + i] = args->geomID;
+        id[INST_ID * n + i] = args->context->instID[0];
+    }
 }
 
 static void occluded(const struct RTCOccludedFunctionNArguments *args) {
-    struct RTCRay *ray = (struct RTCRay *)args->ray;
     const struct mu_geometry *geometry = args->geometryUserPtr;
-    if (args->valid[0] && meet(geometry, geometry->spheres[args->primID], ray) >= 0) ray->tfar = -INFINITY;
+    const unsigned n = args->N;
+    float *number = (float *)args->ray;
+    for (unsigned i = 0; i < n; ++i) {
+        if (!args->valid[i]) continue;
+        const struct RTCRay ray = lane(number, n, i);
+        if (meet(geometry, geometry->spheres[args->primID], &ray) >= 0) number[TFAR * n + i] = -INFINITY;
+    }
 }
 
 void mu_spheres_attach(RTCGeometry embree, struct mu_geometry *geometry) {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * integrator.h: one path through one pixel.
+ * integrator.h: paths through neighbouring pixels.
  *
  * Every random number is a function of (seed, pixel, sample index, dimension), so the picture does not depend
- * on who computes which sample in what order.
+ * on who computes which sample in what order; the rays of a row's first event share packets, so rows are
+ * formed by place alone.
  */
 #ifndef MU_INTEGRATOR_H
 #define MU_INTEGRATOR_H
@@ -31,7 +32,8 @@ typedef struct mu_radiance {
 /* [any] `scratch` is this thread's, of at least mu_integrator_scratch() bytes, aligned to 64: it holds the
  * closures, so nothing is allocated while shading. */
 size_t mu_integrator_scratch(const mu_scene *scene);
-void mu_integrator_path(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t sample,
-                        void *scratch, mu_radiance *out);
+/* [any] Sample number `sample` of the `count` <= MU_PACKET pixels from (x, y) to the right; out[count]. */
+void mu_integrator_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
+                       uint32_t sample, void *scratch, mu_radiance *out);
 
 #endif

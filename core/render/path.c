@@ -3,6 +3,10 @@
 /*
  * path.c: the path tracer. One closure lives at a time, in the thread's scratch; nothing is allocated.
  *
+ * An event is what happens where a ray arrived; it leaves behind a shadow ray to be asked, and the next ray.
+ * The first events of neighbouring paths are traced as packets, for their rays run alike; after that each
+ * path goes its own way.
+ *
  * Rectangle lights end a path: they emit and do not scatter. A path of `depth` scattering events is followed
  * by one more ray that may still find light, so that both strategies see the same paths; where no light can
  * be met, that ray is left out.
@@ -18,6 +22,23 @@ typedef struct mu_arrival {
     float pdf;     /* of its direction, per steradian */
     _Bool certain; /* no light sample could have found the same: camera rays and delta lobes */
 } mu_arrival;
+
+/* A path on its way. */
+typedef struct mu_walk {
+    mu_ray ray; /* the next one */
+    mu_arrival arrival;
+    float throughput[3];
+    mu_random random;
+    uint32_t event;
+    mu_radiance *out;
+} mu_walk;
+
+/* Light that arrives if nothing stands between. */
+typedef struct mu_shadow {
+    mu_ray ray;
+    float throughput[3], arriving[3], weight;
+    _Bool cast;
+} mu_shadow;
 
 /* Draws of one event: 3 for the light, 3 for the BSDF, 1 for roulette. Each event starts at its own
  * dimension, whatever the ones before it used, so that the samples of a pixel stay stratified together. */
@@ -55,11 +76,10 @@ static float weight_found(const mu_path_options *options, const mu_arrival *arri
 }
 
 static void sample_light(const mu_tracer *tracer, const mu_path_options *options, uint32_t choices,
-                         const mu_shading *shading, const float throughput[3], mu_random *random,
-                         mu_radiance *out) {
+                         const mu_shading *shading, mu_walk *walk, mu_shadow *shadow) {
     float u[3];
-    mu_random_pair(random, u);
-    u[2] = choices > 1 ? mu_random_one(random) : 0;
+    mu_random_pair(&walk->random, u);
+    u[2] = choices > 1 ? mu_random_one(&walk->random) : 0;
     mu_light_sample light;
     mu_lights_sample(tracer->lights, shading->hit->p, u, &light);
     if (!(light.pdf > 0) || (options->strategy == MU_BSDF_ONLY && !light.delta)) return;
@@ -69,35 +89,40 @@ static void sample_light(const mu_tracer *tracer, const mu_path_options *options
     musurf_value value;
     shading->type->eval(shading->closure, wi, MUSURF_ALL_LOBES, &value);
     if (!value.lobes) return;
-    float weight = 1 / light.pdf;
-    if (!light.delta && options->strategy == MU_BOTH) weight *= power_heuristic(light.pdf, value.pdf);
-    float arriving[3];
-    for (int c = 0; c < 3; c++) arriving[c] = value.f[c] * light.radiance[c];
-    out->rays++;
-    const mu_ray shadow = mu_geometry_leave(shading->hit, light.direction, light.distance * SHORT_OF_LIGHT);
-    if (!mu_geometry_occluded(tracer->geometry, &shadow)) add(out, throughput, arriving, weight);
+    shadow->weight = 1 / light.pdf;
+    if (!light.delta && options->strategy == MU_BOTH) shadow->weight *= power_heuristic(light.pdf, value.pdf);
+    for (int c = 0; c < 3; c++) {
+        shadow->throughput[c] = walk->throughput[c];
+        shadow->arriving[c] = value.f[c] * light.radiance[c];
+    }
+    shadow->ray = mu_geometry_leave(shading->hit, light.direction, light.distance * SHORT_OF_LIGHT);
+    shadow->cast = 1;
+    walk->out->rays++;
+}
+
+static void add_unshadowed(const mu_walk *walk, const mu_shadow *shadow) {
+    add(walk->out, shadow->throughput, shadow->arriving, shadow->weight);
 }
 
 /* Follows the BSDF: the next ray, its arrival, and what becomes of the throughput. False: the path ends. */
-static _Bool scatter(const mu_shading *shading, mu_random *random, float throughput[3], mu_ray *ray,
-                     mu_arrival *arrival, mu_radiance *out) {
+static _Bool scatter(const mu_shading *shading, mu_walk *walk) {
     float u[3];
-    mu_random_pair(random, u);
-    u[2] = mu_random_one(random);
+    mu_random_pair(&walk->random, u);
+    u[2] = mu_random_one(&walk->random);
     musurf_sample sample;
     shading->type->sample(shading->closure, u, MUSURF_ALL_LOBES, &sample);
     if (!sample.lobe) return 0;
     const float *w = sample.weight, *d = sample.wi;
     if (!(w[0] >= 0 && w[1] >= 0 && w[2] >= 0 && isfinite(w[0] + w[1] + w[2] + d[0] + d[1] + d[2]))) {
-        out->refused++;
+        walk->out->refused++;
         return 0;
     }
     if (!(w[0] + w[1] + w[2] > 0)) return 0;
     const mu_vec3 wi = mu_to_world(&shading->frame, mu_v3(sample.wi[0], sample.wi[1], sample.wi[2]));
     if (!mu_shading_agrees(shading, wi, sample.wi[2])) return 0;
-    for (int c = 0; c < 3; c++) throughput[c] *= sample.weight[c];
-    *arrival = (mu_arrival){shading->hit->p, sample.pdf, (sample.lobe & MUSURF_DELTA_LOBES) != 0};
-    *ray = mu_geometry_leave(shading->hit, mu_normalise(wi), INFINITY);
+    for (int c = 0; c < 3; c++) walk->throughput[c] *= sample.weight[c];
+    walk->arrival = (mu_arrival){shading->hit->p, sample.pdf, (sample.lobe & MUSURF_DELTA_LOBES) != 0};
+    walk->ray = mu_geometry_leave(shading->hit, mu_normalise(wi), INFINITY);
     return 1;
 }
 
@@ -111,51 +136,108 @@ static _Bool survives(mu_random *random, float throughput[3]) {
     return 1;
 }
 
-void mu_path_trace(const mu_tracer *tracer, const mu_path_options *options, mu_ray ray, mu_random *random,
-                   void *scratch, mu_radiance *out) {
+/* What happens where the walk's ray arrived: at `hit`, or, if that is NULL, out of the scene. True: walk->ray
+ * is to be followed. Either way *shadow may ask for a shadow ray. */
+static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_walk *walk, const mu_hit *hit,
+                    void *scratch, mu_shadow *shadow) {
     const mu_scene *scene = tracer->scene;
-    const uint32_t choices = mu_lights_choices(tracer->lights);
-    const _Bool met = mu_lights_met(tracer->lights);
-    float throughput[3] = {1, 1, 1}, radiance[3], light_pdf;
-    mu_arrival arrival = {ray.origin, 0, 1};
-    for (uint32_t event = 0;; event++) {
-        mu_hit hit;
-        out->rays++;
-        if (!mu_geometry_intersect(tracer->geometry, &ray, &hit)) {
-            mu_lights_escaped(tracer->lights, ray.direction, radiance, &light_pdf);
-            add(out, throughput, radiance, weight_found(options, &arrival, light_pdf));
-            return;
-        }
-        if (event == 0) {
-            out->hit = 1;
-            out->normal[0] = hit.frame.n.x;
-            out->normal[1] = hit.frame.n.y;
-            out->normal[2] = hit.frame.n.z;
-        }
-        const mu_object *object = &scene->objects[hit.object];
-        if (object->light != MU_NO_INDEX) {
-            mu_lights_hit(tracer->lights, object->light, arrival.from, ray.direction, hit.distance, radiance,
-                          &light_pdf);
-            add(out, throughput, radiance, weight_found(options, &arrival, light_pdf));
-            return;
-        }
-        if (event == scene->integrator.depth) return;
+    const uint32_t event = walk->event++;
+    mu_radiance *out = walk->out;
+    float radiance[3], light_pdf;
+    shadow->cast = 0;
+    if (!hit) {
+        mu_lights_escaped(tracer->lights, walk->ray.direction, radiance, &light_pdf);
+        add(out, walk->throughput, radiance, weight_found(options, &walk->arrival, light_pdf));
+        return 0;
+    }
+    if (event == 0) {
+        out->hit = 1;
+        out->normal[0] = hit->frame.n.x;
+        out->normal[1] = hit->frame.n.y;
+        out->normal[2] = hit->frame.n.z;
+    }
+    const mu_object *object = &scene->objects[hit->object];
+    if (object->light != MU_NO_INDEX) {
+        mu_lights_hit(tracer->lights, object->light, walk->arrival.from, walk->ray.direction, hit->distance,
+                      radiance, &light_pdf);
+        add(out, walk->throughput, radiance, weight_found(options, &walk->arrival, light_pdf));
+        return 0;
+    }
+    if (event == scene->integrator.depth) return 0;
 
-        mu_shading shading;
-        mu_shading_begin(&shading, scene, &hit, mu_scale(ray.direction, -1), scratch);
-        if (!shading.lobes) return; /* black, but it did block the light */
-        if (event == 0) {
-            shading.type->albedo(shading.closure, out->albedo);
-            out->normal[0] = shading.frame.n.x;
-            out->normal[1] = shading.frame.n.y;
-            out->normal[2] = shading.frame.n.z;
-        }
-        random->dimension = CAMERA_DRAWS + event * EVENT_DRAWS;
-        if (choices && (shading.lobes & ~(uint32_t)MUSURF_DELTA_LOBES))
-            sample_light(tracer, options, choices, &shading, throughput, random, out);
-        if (event + 1 == scene->integrator.depth && !met) return;
-        random->dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
-        if (!scatter(&shading, random, throughput, &ray, &arrival, out)) return;
-        if (event + 1 >= scene->integrator.roulette && !survives(random, throughput)) return;
+    mu_shading shading;
+    mu_shading_begin(&shading, scene, hit, mu_scale(walk->ray.direction, -1), scratch);
+    if (!shading.lobes) return 0; /* black, but it did block the light */
+    if (event == 0) {
+        shading.type->albedo(shading.closure, out->albedo);
+        out->normal[0] = shading.frame.n.x;
+        out->normal[1] = shading.frame.n.y;
+        out->normal[2] = shading.frame.n.z;
+    }
+    const uint32_t choices = mu_lights_choices(tracer->lights);
+    walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS;
+    if (choices && (shading.lobes & ~(uint32_t)MUSURF_DELTA_LOBES))
+        sample_light(tracer, options, choices, &shading, walk, shadow);
+    if (event + 1 == scene->integrator.depth && !mu_lights_met(tracer->lights)) return 0;
+    walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
+    if (!scatter(&shading, walk)) return 0;
+    if (event + 1 >= scene->integrator.roulette && !survives(&walk->random, walk->throughput)) return 0;
+    walk->out->rays++;
+    return 1;
+}
+
+/* From where the walk stands to its end, ray by ray. */
+static void follow(const mu_tracer *tracer, const mu_path_options *options, mu_walk *walk, void *scratch) {
+    for (_Bool goes_on = 1; goes_on;) {
+        mu_hit hit;
+        mu_shadow shadow;
+        const _Bool met = mu_geometry_intersect(tracer->geometry, &walk->ray, &hit);
+        goes_on = arrive(tracer, options, walk, met ? &hit : NULL, scratch, &shadow);
+        if (shadow.cast && !mu_geometry_occluded(tracer->geometry, &shadow.ray))
+            add_unshadowed(walk, &shadow);
+    }
+}
+
+static mu_walk start(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
+                     uint32_t y, uint32_t sample, mu_radiance *out) {
+    *out = (mu_radiance){.rays = 1};
+    mu_walk walk = {.random = mu_random_start(seed, x, y, sample), .throughput = {1, 1, 1}, .out = out};
+    walk.random.independent = options->independent;
+    float u[2];
+    mu_random_pair(&walk.random, u);
+    walk.ray = mu_camera_ray(&tracer->scene->camera, &tracer->scene->film, x, y, u);
+    walk.arrival = (mu_arrival){walk.ray.origin, 0, 1};
+    return walk;
+}
+
+void mu_path_pixel(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
+                   uint32_t y, uint32_t sample, void *scratch, mu_radiance *out) {
+    mu_walk walk = start(tracer, options, seed, x, y, sample, out);
+    follow(tracer, options, &walk, scratch);
+}
+
+void mu_path_row(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
+                 uint32_t y, uint32_t count, uint32_t sample, void *scratch, mu_radiance *out) {
+    mu_walk walks[MU_PACKET];
+    mu_ray rays[MU_PACKET] = {{.near = 0}};
+    mu_hit hits[MU_PACKET];
+    mu_shadow shadows[MU_PACKET];
+    for (uint32_t i = 0; i < count; i++) {
+        walks[i] = start(tracer, options, seed, x + i, y, sample, &out[i]);
+        rays[i] = walks[i].ray;
+    }
+    const uint32_t met = mu_geometry_intersect_packet(tracer->geometry, rays, (1u << count) - 1, hits);
+    uint32_t goes_on = 0, cast = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const mu_hit *hit = met >> i & 1 ? &hits[i] : NULL;
+        if (arrive(tracer, options, &walks[i], hit, scratch, &shadows[i])) goes_on |= 1u << i;
+        if (!shadows[i].cast) continue;
+        rays[i] = shadows[i].ray;
+        cast |= 1u << i;
+    }
+    const uint32_t dark = cast ? mu_geometry_occluded_packet(tracer->geometry, rays, cast) : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (cast >> i & ~(dark >> i) & 1) add_unshadowed(&walks[i], &shadows[i]);
+        if (goes_on >> i & 1) follow(tracer, options, &walks[i], scratch);
     }
 }

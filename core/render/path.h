@@ -12,21 +12,21 @@
 #include "core/render/integrator.h"
 #include "core/render/random.h"
 
-typedef struct mu_path_options { /* all zero: what mu_integrator_path does */
+typedef struct mu_path_options { /* all zero: what mu_integrator_row does */
     enum { MU_BOTH, MU_BSDF_ONLY, MU_LIGHT_ONLY } strategy;
     _Bool independent; /* random numbers without stratification */
 } mu_path_options;
-
-void mu_path_trace(const mu_tracer *tracer, const mu_path_options *options, mu_ray ray, mu_random *random,
-                   void *scratch, mu_radiance *out);
 
 /* The camera ray through pixel (x, y), counted from the top left, spread by the film's filter; u in [0,1)^2.
  */
 mu_ray mu_camera_ray(const mu_camera *camera, const mu_film_settings *film, uint32_t x, uint32_t y,
                      const float u[2]);
 
-/* mu_integrator_path with options. */
+/* One sample of one pixel. */
 void mu_path_pixel(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
                    uint32_t y, uint32_t sample, void *scratch, mu_radiance *out);
+/* mu_integrator_row with options. */
+void mu_path_row(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x, uint32_t y,
+                 uint32_t count, uint32_t sample, void *scratch, mu_radiance *out);
 
 #endif

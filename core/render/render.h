@@ -14,8 +14,8 @@
 #include "core/render/film.h"
 #include "core/render/integrator.h"
 
-/* [any] One sample: what mu_integrator_path is, with a context of the caller's. */
-typedef void (*mu_sample_function)(const void *context, uint64_t seed, uint32_t x, uint32_t y,
+/* [any] One sample of each of up to MU_PACKET pixels: what mu_integrator_row is, with a context of the caller's. */
+typedef void (*mu_sample_function)(const void *context, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
                                    uint32_t sample, void *scratch, mu_radiance *out);
 
 #define MU_MOST_SAMPLES (1u << 24) /* per pixel */

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { TILE = 8 }; /* pixels along its side: small, so that threads finish a pass together */
+enum { TILE = MU_PACKET }; /* pixels along its side: small, so that threads finish a pass together */
 
 _Bool mu_pass_make(mu_pass *pass, mu_film *film, const mu_render_plan *plan, mu_error *error) {
     *pass = (mu_pass){.plan = plan, .film = film};
@@ -48,32 +48,46 @@ void mu_pass_free(mu_pass *pass) {
     pthread_mutex_destroy(&pass->lock);
 }
 
-/* One tile, pixel by pixel; leaves between pixels when told to. */
-static void work_tile(mu_pass *pass, uint64_t tile, void *scratch) {
+typedef struct mu_tally {
+    uint64_t samples, rays, refused;
+} mu_tally;
+
+/* One more sample for each pixel of a tile's row that lacks one. Pixels with the same number of samples go
+ * together, which is all of them, since tiles are left between rows only: the packets are the same in every
+ * run. */
+static _Bool work_row(mu_pass *pass, uint32_t x, uint32_t x1, uint32_t y, void *scratch, mu_tally *tally) {
     const mu_render_plan *plan = pass->plan;
+    mu_pixel *row = &pass->film->pixels[(size_t)y * pass->film->width];
+    _Bool worked = 0;
+    for (uint32_t count; x < x1; x += count) {
+        const uint32_t sample = row[x].samples;
+        for (count = 1; x + count < x1 && row[x + count].samples == sample;) ++count;
+        if (sample >= pass->target) continue;
+        mu_radiance radiance[MU_PACKET] = {{.rgb = {0}}};
+        plan->sample(plan->context, plan->seed, x, y, count, sample, scratch, radiance);
+        for (uint32_t i = 0; i < count; ++i) {
+            tally->refused += (uint64_t)!mu_pixel_add(&row[x + i], &radiance[i]) + radiance[i].refused;
+            tally->rays += radiance[i].rays;
+        }
+        tally->samples += count;
+        worked = 1;
+    }
+    return worked;
+}
+
+/* One tile, row by row; leaves between rows when told to. */
+static void work_tile(mu_pass *pass, uint64_t tile, void *scratch) {
     const mu_film *film = pass->film;
     const uint64_t across = (film->width + TILE - 1) / TILE;
     const uint32_t x0 = (uint32_t)(tile % across) * TILE, y0 = (uint32_t)(tile / across) * TILE;
     const uint32_t x1 = film->width - x0 < TILE ? film->width : x0 + TILE;
     const uint32_t y1 = film->height - y0 < TILE ? film->height : y0 + TILE;
-    uint64_t samples = 0, rays = 0, refused = 0;
-    for (uint32_t y = y0; y < y1; ++y) {
-        for (uint32_t x = x0; x < x1; ++x) {
-            if (atomic_load_explicit(&pass->halt, memory_order_relaxed)) goto leave;
-            mu_pixel *pixel = &film->pixels[(size_t)y * film->width + x];
-            while (pixel->samples < pass->target) {
-                mu_radiance sample = {.rgb = {0}};
-                plan->sample(plan->context, plan->seed, x, y, pixel->samples, scratch, &sample);
-                refused += (uint64_t)!mu_pixel_add(pixel, &sample) + sample.refused;
-                rays += sample.rays;
-                samples += 1;
-            }
-        }
-    }
-leave:
-    atomic_fetch_add_explicit(&pass->samples, samples, memory_order_relaxed);
-    atomic_fetch_add_explicit(&pass->rays, rays, memory_order_relaxed);
-    atomic_fetch_add_explicit(&pass->refused, refused, memory_order_relaxed);
+    mu_tally tally = {0};
+    for (uint32_t y = y0; y < y1 && !atomic_load_explicit(&pass->halt, memory_order_relaxed); ++y)
+        while (work_row(pass, x0, x1, y, scratch, &tally)) continue;
+    atomic_fetch_add_explicit(&pass->samples, tally.samples, memory_order_relaxed);
+    atomic_fetch_add_explicit(&pass->rays, tally.rays, memory_order_relaxed);
+    atomic_fetch_add_explicit(&pass->refused, tally.refused, memory_order_relaxed);
 }
 
 static void *work(void *argument) {

@@ -48,32 +48,51 @@ static void perturb(mu_stream *random, double epsilon, const double w[3], double
 }
 
 /* The sum of two rounded directions is off by epsilon (|wo| + |wi|) in each component, which weighs the more
- * the shorter the sum is: move the half-vector by that, and reflect wo by it. */
+ * the shorter the sum is. */
 static void perturb_half(mu_stream *random, double epsilon, const double wo[3], const double wi[3],
-                         double out[3]) {
-    double h[3], facing = 0;
+                         double h[3]) {
     for (int c = 0; c < 3; c++)
         h[c] = wo[c] + wi[c] + signed_four(random) * epsilon * (fabs(wo[c]) + fabs(wi[c]));
     normalise(h);
+}
+
+static void reflect(const double wo[3], const double h[3], double out[3]) {
+    double facing = 0;
     for (int c = 0; c < 3; c++) facing += wo[c] * h[c];
     for (int c = 0; c < 3; c++) out[c] = 2 * facing * h[c] - wo[c];
     normalise(out);
+}
+
+static void widen(mu_answer *answer, int quantity, double moved) {
+    const double change = fabs(moved - answer->value[quantity]);
+    answer->slack[quantity] = fmax(answer->slack[quantity], isnan(change) ? INFINITY : change);
 }
 
 mu_answer mu_subject_ask_rounded(const mu_subject *subject, double epsilon, const double wo[3],
                                  const double *wm, const double *wi) {
     mu_answer answer = mu_subject_ask(subject, wo, wm, wi);
     mu_stream random = mu_stream_make(0x736c61636bu, 0); /* the same signs each time */
+    double still[3] = {0}, density = 0;
+    if (wi) {
+        perturb_half(&random, 0, wo, wi, still);
+        density = mu_subject_ask(subject, wo, still, NULL).value[MU_AT_D];
+    }
     for (int trial = 0; answer.ok && trial < 8; trial++) {
-        double o[3], m[3], i[3];
+        double o[3], m[3], h[3], i[3];
         perturb(&random, epsilon, wo, o);
         if (wm) perturb(&random, epsilon, wm, m);
-        if (wi) perturb_half(&random, epsilon, o, wi, i);
-        const mu_answer moved = mu_subject_ask(subject, o, wm ? m : NULL, wi ? i : NULL);
-        for (int k = 0; k < MU_AT_COUNT; k++) {
-            const double change = fabs(moved.value[k] - answer.value[k]);
-            answer.slack[k] = fmax(answer.slack[k], isnan(change) ? INFINITY : change);
+        if (wi) {
+            perturb_half(&random, epsilon, o, wi, h);
+            reflect(o, h, i);
         }
+        const mu_answer moved = mu_subject_ask(subject, o, wm ? m : NULL, wi ? i : NULL);
+        for (int k = 0; k < MU_AT_COUNT; k++) widen(&answer, k, moved.value[k]);
+        if (!wi) continue;
+        /* Reflected about h, wi moves too, and what its cosine does to f may hide what h does to D: D alone.
+         */
+        const double ratio = mu_subject_ask(subject, wo, h, NULL).value[MU_AT_D] / density;
+        widen(&answer, MU_AT_F, answer.value[MU_AT_F] * ratio);
+        widen(&answer, MU_AT_PDF, answer.value[MU_AT_PDF] * ratio);
     }
     return answer;
 }

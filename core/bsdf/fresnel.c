@@ -19,7 +19,7 @@ static real dielectric(real eta, real c) {
     if (!(g2 > 0)) return eta == 1 ? 0 : 1;
     const real g = sqrt(g2), sum = g + c, s = (eta - 1) * (eta + 1) / square(sum); /* (g - c) / (g + c) */
     const real p = (c * sum - 1) / (c * (g - c) + 1);
-    return s * s * (1 + p * p) / 2;
+    return smaller(s * s * (1 + p * p) / 2, 1); /* two roundings above 1 are still above 1 */
 }
 
 /* n + ik: |.|² of both amplitudes; a + ib = sqrt((n + ik)² - sin²) */

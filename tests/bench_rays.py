@@ -27,7 +27,7 @@ import time
 import numpy
 
 GOAL = 4
-MORE = 4
+MORE = 16
 MUSURF = pathlib.Path(os.environ.get("BUILD", "build")).resolve() / "musurf"
 LIGHT = (0.5, -0.3, 0.12)  # toward it
 

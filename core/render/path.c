@@ -77,9 +77,10 @@ static float weight_found(const mu_path_options *options, const mu_arrival *arri
 
 static void sample_light(const mu_tracer *tracer, const mu_path_options *options, uint32_t choices,
                          const mu_shading *shading, mu_walk *walk, mu_shadow *shadow) {
-    float u[3];
-    mu_random_pair(&walk->random, u);
-    u[2] = choices > 1 ? mu_random_one(&walk->random) : 0;
+    float u[3] = {0};
+    if (mu_lights_met(tracer->lights))
+        mu_random_pair(&walk->random, u); /* else they are all points at infinity */
+    if (choices > 1) u[2] = mu_random_one(&walk->random);
     mu_light_sample light;
     mu_lights_sample(tracer->lights, shading->hit->p, u, &light);
     if (!(light.pdf > 0) || (options->strategy == MU_BSDF_ONLY && !light.delta)) return;

@@ -93,7 +93,7 @@ class BadScenes(unittest.TestCase):
         self.assertTrue(done.err.endswith("\n"))
         self.assertIn(str(self.scene), done.err)
         self.assertEqual(self.image.read_bytes(), b"what was there")
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.name not in ("tile.obj", "cut.exr")),
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir() if p.name not in ("tile.obj", "cut.exr", "cut.png")),
                          ["out.exr", "scene.json"])
         if path:
             self.assertEqual(text.count(place), 1, place)
@@ -139,6 +139,10 @@ class BadScenes(unittest.TestCase):
                 (self.folder / "tile.obj").write_text(text)
                 self.refused(GOOD, '"tile.obj"', [word], "$.meshes.tile.file")
 
+    def test_a_mesh_that_nothing_uses(self):
+        unused = GOOD.replace('"tile": {"file": "tile.obj"}', '"tile": {"file": "tile.obj"}, "other": {"file": "."}')
+        self.refused(unused, '"."', ["not a regular file"], "$.meshes.other.file")
+
     def test_maps_need_texture_coordinates(self):
         scene = GOOD.replace('"two_sided": true', '"grid": {"material": "clay", "width": 0.5}')
         self.refused(scene, '{"material": "clay", "width"', ["texture coordinates"], "$.objects[2].grid")
@@ -159,6 +163,13 @@ class BadScenes(unittest.TestCase):
             with self.subTest(size):
                 (self.folder / "cut.exr").write_bytes(data[:size])
                 self.refused(scene, '"cut.exr"', ["cut.exr"], "$.lights[0].image")
+
+    def test_a_cut_png(self):
+        """libpng speaks on stderr for itself; there is to be one line, with its place."""
+        whole = (pathlib.Path(__file__).resolve().parent.parent / "scenes/figure1.png").read_bytes()
+        (self.folder / "cut.png").write_bytes(whole[:len(whole) // 2])
+        scene = GOOD.replace('{"type": "constant", "radiance": 1}', '{"type": "environment", "image": "cut.png"}')
+        self.refused(scene, '"cut.png"', ["truncated"], "$.lights[0].image")
 
     def write_good(self):
         self.scene.write_text(GOOD)

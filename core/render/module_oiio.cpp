@@ -9,8 +9,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <string>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace {
 
@@ -20,6 +22,30 @@ float *refuse(char *message, size_t size, const std::string &why) {
     std::snprintf(message, size, "%s", why.substr(0, why.find('\n')).c_str());
     return nullptr;
 }
+
+/* libpng and libjpeg write to stderr what OpenImageIO then says again: while one of these lives, nothing arrives there. */
+class Silence {
+  public:
+    Silence() {
+        std::fflush(stderr);
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        if (nowhere < 0) return;
+        stderr_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+        if (stderr_ >= 0) dup2(nowhere, STDERR_FILENO);
+        close(nowhere);
+    }
+    ~Silence() {
+        if (stderr_ < 0) return;
+        std::fflush(stderr);
+        dup2(stderr_, STDERR_FILENO);
+        close(stderr_);
+    }
+    Silence(const Silence &) = delete;
+    Silence &operator=(const Silence &) = delete;
+
+  private:
+    int stderr_ = -1;
+};
 
 /* IEC 61966-2-1 */
 float linear_from_srgb(float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); }
@@ -62,10 +88,11 @@ float *read(const char *file, int *width, int *height, char *message, size_t siz
 
 } // namespace
 
-/* Linear RGB in malloc'ed memory, or NULL and one line in `message`. */
+/* Linear RGB in malloc'ed memory, or NULL and one line in `message`. Not for two threads at once: it turns stderr off. */
 extern "C" __attribute__((visibility("default"))) float *mu_oiio_read(const char *file, int *width, int *height,
                                                                       char *message, size_t size) {
     try {
+        const Silence silence;
         return read(file, width, height, message, size);
     } catch (const std::exception &trouble) {
         return refuse(message, size, trouble.what());

@@ -37,6 +37,7 @@ static char *resolve(const char *file, mu_error *error) {
 
 _Bool mu_output_open(mu_output *output, const char *file, mu_error *error) {
     *output = (mu_output){.descriptor = -1};
+    if (!*file) return mu_fail(error, "\"\" is no name of a file");
     output->target = resolve(file, error);
     if (!output->target) return 0;
 

@@ -66,11 +66,17 @@ static _Bool read_size(const mu_options *given, uint32_t *width, uint32_t *heigh
         char *end;
         good = *text >= '0' && *text <= '9'; /* strtoul would take signs and blanks */
         side[i] = strtoul(text, &end, 10);
-        good = good && side[i] >= 1 && side[i] <= 65536 && *end == (i ? '\0' : 'x');
+        good = good && side[i] >= 1 && side[i] <= MU_LONGEST_SIDE && *end == (i ? '\0' : 'x');
         text = end + 1;
     }
     if (!good) {
-        mu_refuse(given->usage, "--size is \"%s\"; WxH is needed, both from 1 to 65536", given->value);
+        mu_refuse(given->usage, "--size is \"%s\"; WxH is needed, both from 1 to %d", given->value,
+                  MU_LONGEST_SIDE);
+        return 0;
+    }
+    if (side[0] * side[1] > MU_MOST_PIXELS) {
+        mu_refuse(given->usage, "--size is \"%s\": %lu pixels are too many; %d is the limit", given->value,
+                  side[0] * side[1], MU_MOST_PIXELS);
         return 0;
     }
     *width = (uint32_t)side[0];

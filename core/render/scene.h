@@ -23,6 +23,10 @@ typedef struct mu_camera {
     float half_height;          /* perspective: tan(vertical field of view / 2); orthographic: half the height in world units */
 } mu_camera;
 
+/* Both from a scene file and from --size. */
+#define MU_LONGEST_SIDE 32768
+#define MU_MOST_PIXELS  (1 << 26) /* 4 GiB of sums */
+
 typedef struct mu_film_settings {
     uint32_t width, height;
     enum { MU_FILTER_BOX, MU_FILTER_GAUSSIAN } filter;

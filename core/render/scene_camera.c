@@ -50,7 +50,6 @@ _Bool mu_read_camera(mu_reader *reader) {
 
 _Bool mu_read_film(mu_reader *reader) {
     static const char *const filters[] = {"box", "gaussian", NULL}, *const pixels[] = {"float", "half", NULL};
-    const long long longest_side = 32768, most_pixels = 1 << 26; /* 4 GiB of sums */
     mu_film_settings *film = &reader->scene->film;
     mu_error *error = reader->error;
     size_t filter = 1, half = 1;
@@ -59,15 +58,15 @@ _Bool mu_read_film(mu_reader *reader) {
     film->height = 360;
     if (place.value) {
         if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_FILM), error) ||
-            !mu_read_count(&place, "width", 1, longest_side, &film->width, error) ||
-            !mu_read_count(&place, "height", 1, longest_side, &film->height, error) ||
+            !mu_read_count(&place, "width", 1, MU_LONGEST_SIDE, &film->width, error) ||
+            !mu_read_count(&place, "height", 1, MU_LONGEST_SIDE, &film->height, error) ||
             !mu_read_choice(&place, "filter", filters, &filter, error) ||
             !mu_read_float(&place, "exposure", -64, 64, &film->exposure, error) ||
             !mu_read_choice(&place, "pixels", pixels, &half, error))
             return 0;
-        if ((long long)film->width * film->height > most_pixels)
-            return mu_place_fail(&place, error, "%u x %u pixels are too many; %lld is the limit",
-                                 (unsigned)film->width, (unsigned)film->height, most_pixels);
+        if ((long long)film->width * film->height > MU_MOST_PIXELS)
+            return mu_place_fail(&place, error, "%u x %u pixels are too many; %d is the limit",
+                                 (unsigned)film->width, (unsigned)film->height, MU_MOST_PIXELS);
     }
     film->filter = filter ? MU_FILTER_GAUSSIAN : MU_FILTER_BOX;
     film->filter_radius = filter ? 1.5f : 0.5f;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/render/mesh.h"
@@ -62,12 +63,14 @@ _Bool mu_check_meshes(mu_reader *reader) {
         if (!mu_place_string(&place, &file, reader->error)) return 0;
         char *path = mu_scene_path(reader, file);
         if (!path) return mu_fail(reader->error, "not enough memory for the scene");
-        if (access(path, R_OK)) {
-            mu_place_fail(&place, reader->error, "%.500s: %s", path, strerror(errno));
-            free(path);
-            return 0;
-        }
+        struct stat status;
+        const _Bool there = !access(path, R_OK) && !stat(path, &status);
+        const _Bool good = there && S_ISREG(status.st_mode);
+        if (!good)
+            mu_place_fail(&place, reader->error, "%.500s: %s", path,
+                          there ? "is not a regular file" : strerror(errno));
         free(path);
+        if (!good) return 0;
     }
     return 1;
 }

@@ -10,6 +10,9 @@
  */
 #include "core/bsdf/linear_map.h"
 
+#include <stdint.h>
+#include <string.h>
+
 /* Beyond these delta, D at its peak (or beside it) is no number of this precision any more: it saturates. */
 #if MU_REAL_BITS == 24
 #define DELTA_MAX 0x1p100
@@ -18,6 +21,26 @@
 #define DELTA_MAX 0x1p500
 #define VIEW_MAX  0x1p400
 #endif
+
+/* frexp and ldexp without their calls, which would be half of this file's time. `x` is positive and finite;
+ * `e` from -1022 to 1023. */
+static int exponent_of(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int e = (int)(bits >> 52) - 1022;
+    if (x < DBL_MIN) (void)frexp(x, &e);
+    return e;
+}
+static double power_of_two(int e) {
+    const uint64_t bits = (uint64_t)(e + 1023) << 52;
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+/* Exact but for a result that is subnormal; 0 or infinite beyond. */
+static double scaled(double x, int e) {
+    return x * power_of_two(e / 2) * power_of_two(e - e / 2);
+}
 
 /* a d - b c to within 1.5 units in the last place, however much cancels (Kahan). */
 static double product_difference(double a, double d, double b, double c) {
@@ -31,10 +54,11 @@ static double clamp(double x, double low, double high) {
 
 /* M' and its signed determinant; 0 if M is not finite, or singular. */
 static double reduce(const double m[4], double reduced[4], int *exponent) {
-    const double largest = fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3])));
+    double largest = 0;
+    for (int i = 0; i < 4; i++) largest = fabs(m[i]) > largest ? fabs(m[i]) : largest;
     if (!(largest > 0 && largest <= DBL_MAX) || isnan(m[0] + m[1] + m[2] + m[3])) return 0;
-    (void)frexp(largest, exponent);
-    for (int i = 0; i < 4; i++) reduced[i] = ldexp(m[i], -*exponent);
+    *exponent = exponent_of(largest);
+    for (int i = 0; i < 4; i++) reduced[i] = scaled(m[i], -*exponent);
     const double det = product_difference(reduced[0], reduced[3], reduced[1], reduced[2]);
     return fabs(det) < 1e-30 ? 0 : det;
 }
@@ -54,21 +78,20 @@ int MU(map_make)(map *out, const double m[4], double unit) {
     const double det = reduce(m, r, &exponent);
     if (det == 0) return 0;
     const double root = sqrt(fabs(det));
-    const double delta = clamp(ldexp(root / unit, exponent), 1 / DELTA_MAX, DELTA_MAX);
+    const double delta = clamp(scaled(root / unit, exponent), 1 / DELTA_MAX, DELTA_MAX);
 
-    const double normal = sqrt(delta) / root;
+    const double root_delta = sqrt(delta), normal = root_delta / root;
     const double dropped = MUTANT(1, sqrt(delta * unit), 1); /* u too long by |det M|^(1/4) */
     const double b = MUTANT(7, r[1], r[2]), c = MUTANT(7, r[2], r[1]);
     out->normal[0] = R(r[0] * normal * dropped); /* M^T: rows [a b], [c d] */
     out->normal[1] = R(b * normal * dropped);
     out->normal[2] = R(c * normal * dropped);
     out->normal[3] = R(r[3] * normal * dropped);
-    out->normal_z = R(dropped / sqrt(delta));
+    out->normal_z = R(dropped / root_delta);
 
-    int binary;
-    (void)frexp(clamp(delta * root, 1 / VIEW_MAX, VIEW_MAX), &binary);
-    const double scale = ldexp(1, binary);
-    const double view = scale / (delta * root) * (det < 0 ? -1 : 1);
+    const double shrink = delta * root;
+    const double scale = power_of_two(exponent_of(clamp(shrink, 1 / VIEW_MAX, VIEW_MAX)));
+    const double view = scale / shrink * (det < 0 ? -1 : 1);
     out->view[0] = R(MUTANT(2, r[0], r[3]) * view); /* adj M: rows [d -c], [-b a] */
     out->view[1] = R(MUTANT(2, r[1], -r[1]) * view);
     out->view[2] = R(MUTANT(2, r[2], -r[2]) * view);

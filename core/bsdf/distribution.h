@@ -29,9 +29,11 @@
 
 #include "core/bsdf/linear_map.h"
 
+enum { MU_SHAPE = 20 };
+
 /* A prepared distribution. What `shape` holds is each one's own business. */
 typedef struct MU(mu_base) {
-    real shape[16];
+    real shape[MU_SHAPE];
     const real *table;
 } base;
 

@@ -14,6 +14,8 @@
 #include "core/bsdf/cap.h"
 #include "core/bsdf/gtr_mixture.h"
 
+_Static_assert((int)GTR_SHAPE <= (int)MU_SHAPE, "GTR has more constants than a base holds");
+
 static inline real density(const base *b, real r2, real z2, real n2) {
     const real *g = b->shape;
     const real ref = z2 + g[GTR_REF] * r2, other = g[GTR_OTHER_Z] * z2 + g[GTR_UNIT] * r2 * g[GTR_UNIT];
@@ -36,7 +38,7 @@ static inline real z_lambda(const base *b, real r2, real z2, real z) {
         (bits & 0x003fffff) | 0x3f800000; /* mantissa within its half octave: 1 ... 1.5 */
     float mantissa;
     memcpy(&mantissa, &centred, sizeof mantissa);
-    const float x = piece > 0 ? 4 * mantissa - 5 : 2 * ldexpf(v, octaves) - 1;
+    const float x = piece > 0 ? 4 * mantissa - 5 : 2 * (v * g[GTR_TO_FIRST]) - 1;
     const float *c = b->table + GTR_CELL * (piece > 0 ? piece : 0);
     const float x2 = x * x, x4 = x2 * x2;
     const float phi =
@@ -128,6 +130,7 @@ static double prepare(base *b, double alpha, double gamma, void *table) {
     if (table && MU_REAL_BITS == 24) {
         const int octaves = mu_gtr_table_octaves(table_unit(alpha, gamma));
         g[GTR_OCTAVES] = R(octaves);
+        g[GTR_TO_FIRST] = R(ldexp(1, octaves));
         g[GTR_TABLE_R2] = R(pow(table_unit(alpha, gamma) / unit, 2));
         mu_gtr_table_build(table, octaves, alpha, gamma, table_unit(alpha, gamma));
         b->table = table;

@@ -40,7 +40,9 @@ enum {
     GTR_MIDDLE_ROOT,
     GTR_RIGHT,
     GTR_TABLE_R2, /* r² of the table per r²; */
-    GTR_OCTAVES
+    GTR_OCTAVES,
+    GTR_TO_FIRST, /* 2^octaves: stretches the piece at 0 to [0, 1] */
+    GTR_SHAPE
 };
 
 #endif

@@ -60,7 +60,7 @@ static void eval(const closure *c, const real wi[3], value *out) {
     if (!(wi[2] > 0)) return;
     real h[3] = {c->wo[0] + wi[0], c->wo[1] + wi[1], c->wo[2] + wi[2]};
     real h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
-    const real cosine = smaller(sqrt(h2) / 2, 1);   /* wo.wm = |h| / 2 */
+    const real sum2 = h2;
     for (int i = 0; h2 < R(1e-24) && i < 32; i++) { /* wi = -wo but for rounding: h² must not underflow */
         for (int k = 0; k < 3; k++) h[k] *= R(0x1p60);
         h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
@@ -70,12 +70,13 @@ static void eval(const closure *c, const real wi[3], value *out) {
     const real f =
         smaller(quarter_d * smaller(scale * shadowing(c, 1, wi[2], lambda_i), saturated), saturated);
     real F[3] = {1, 1, 1};
-    if (c->surface->fresnel.kind) MU(fresnel_eval)(&c->surface->fresnel, cosine, F);
+    if (c->surface->fresnel.kind) /* wo.wm = |h| / 2 */
+        MU(fresnel_eval)(&c->surface->fresnel, smaller(sqrt(sum2) / 2, 1), F);
     for (int k = 0; k < 3; k++) out->f[k] = F[k] * f;
     const real sigma_i = scale * wi[2] + lambda_i;
     if (MUTANT(5, 1, c->surface->sampler == MU_SAMPLE_NDF)) {
         out->pdf = out->pdf_reverse =
-            smaller(quarter_d * smaller(h[2] / (sqrt(h2) * cosine), saturated), saturated);
+            smaller(quarter_d * smaller(h[2] / (sqrt(h2) * sqrt(sum2) / 2), saturated), saturated);
     } else {
         out->pdf = smaller(quarter_d * (scale / larger(c->sigma, REAL_MIN)), saturated);
         out->pdf_reverse = smaller(quarter_d * (scale / larger(sigma_i, REAL_MIN)), saturated);

@@ -48,7 +48,7 @@ static double uniform(void) {
 
 mu_film noise_film(uint32_t width, uint32_t height, uint32_t samples) {
     mu_film film;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_true(mu_film_make(&film, width, height, &error));
     for (size_t i = 0; i < (size_t)width * height; ++i)
         for (uint32_t s = 0; s < samples; ++s) {

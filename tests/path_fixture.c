@@ -34,7 +34,7 @@ void fixture_look(path_fixture *f, mu_vec3 direction, mu_vec3 up) {
 
 uint32_t fixture_material(path_fixture *f, const char *json) {
     mu_document document;
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     const uint32_t index = f->scene.material_count++;
     assert_true(index < FIXTURE_MOST);
     if (!mu_document_parse(&document, "test", json, strlen(json), 1, &error)) fail_msg("%s", error.text);
@@ -79,7 +79,7 @@ mu_light *fixture_light(path_fixture *f, mu_light light) {
 }
 
 void fixture_ready(path_fixture *f) {
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     f->geometry = mu_geometry_build(&f->scene, 1, &error);
     if (!f->geometry) fail_msg("%s", error.text);
     f->made = mu_lights_build(&f->scene, &error);

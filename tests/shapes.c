@@ -96,7 +96,7 @@ mu_object *test_add(test_scene *s, int shape, const mu_affine *to_world) {
 }
 
 void test_build(test_scene *s) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     s->scene.objects = s->objects;
     s->scene.meshes = s->meshes;
     s->geometry = mu_geometry_build(&s->scene, 1, &error);

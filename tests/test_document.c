@@ -20,7 +20,7 @@
 #include "core/render/document_locate.h"
 
 static mu_document parsed(const char *text) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document document;
     if (!mu_document_parse(&document, "file", text, strlen(text), 1, &error))
         fail_msg("%s: %s", text, error.text);
@@ -152,7 +152,7 @@ static void test_line_and_column(void **state) {
         {&missing, 0, "file:2:9: $[\"\xc3\xa9\xf0\x9f\x98\x80\"].missing: here"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         assert_false(cases[i].at_key ? mu_place_fail_key(cases[i].place, &error, "here")
                                      : mu_place_fail(cases[i].place, &error, "here"));
         assert_string_equal(error.text, cases[i].message);
@@ -173,7 +173,7 @@ static void test_long_paths(void **state) {
     static mu_place places[DEPTH + 1];
     places[0] = mu_place_root(&d);
     for (int i = 0; i < DEPTH; i++) places[i + 1] = mu_place_element(places + i, 0);
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_place_fail(places + DEPTH, &error, "here");
     assert_true(strncmp(error.text, "file:1:1001: $...", 17) == 0);
     assert_non_null(strstr(error.text, "[0]: here"));
@@ -214,7 +214,7 @@ static void test_syntax_errors(void **state) {
         {"[1,\0 2]", "file:1:4: $[1]: a NUL byte; JSON text is needed", 7},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         mu_document d;
         const size_t length = cases[i].length ? cases[i].length : strlen(cases[i].text);
         assert_false(mu_document_parse(&d, "file", cases[i].text, length, 1, &error));
@@ -225,7 +225,7 @@ static void test_syntax_errors(void **state) {
 
 static void test_first_line_counts(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document d;
     assert_false(mu_document_parse(&d, "stdin", "{\"a\" 1}", 7, 41, &error));
     assert_string_equal(error.text, "stdin:41:6: $.a: ':' expected at '1'");
@@ -246,7 +246,7 @@ static void test_deep_nesting(void **state) {
     assert_non_null(text);
     for (int object = 0; object < 2; object++) {
         for (size_t i = 0; i < length; i++) text[i] = object ? "{\"a\":"[i % 5] : '[';
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         mu_document d;
         assert_false(mu_document_parse(&d, "file", text, length, 1, &error));
         assert_non_null(strstr(error.text, ": $...: nested deeper than 2048 levels"));
@@ -257,7 +257,7 @@ static void test_deep_nesting(void **state) {
 /* -------------------------------------------------------------------------------------------------- files */
 
 static void expect_refused(const char *file, const char *end) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document d;
     assert_false(mu_document_read(&d, file, &error));
     assert_true(strncmp(error.text, file, strlen(file)) == 0);
@@ -288,7 +288,7 @@ static void test_files(void **state) {
     assert_non_null(out);
     fputs("{\"alpha\": 0.5}", out);
     assert_int_equal(fclose(out), 0);
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document d;
     assert_true(mu_document_read(&d, file, &error));
     assert_true(json_number_value(json_object_get(d.root, "alpha")) == 0.5);

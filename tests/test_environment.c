@@ -72,7 +72,7 @@ static mu_sky environment(const char *file, float rotation) {
     snprintf(name, sizeof name, "%s", file);
     const mu_light light = {.kind = MU_ENVIRONMENT, .image = name, .rotation = rotation, .scale = {1, 1, 1}};
     mu_sky sky;
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     if (!mu_sky_make_environment(&sky, &light, &error)) fail_msg("%s", error.text);
     return sky;
 }
@@ -124,7 +124,7 @@ static void test_broken_pixels_are_clamped(void **state) {
 }
 
 static void refuses(const char *file, const char *expected) {
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     int width, height;
     float *pixels = mu_image_read(file, &width, &height, &error);
     if (pixels) fail_msg("%s was read", file);

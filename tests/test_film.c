@@ -41,6 +41,26 @@ static void pixel_statistics(void **state) {
     assert_int_equal(pixel.hits, 3);
 }
 
+/* Sixteen samples 0 ... 15 again and again, in any order within a block, always have the same mean: what is
+ * left is nothing. Blocks whose sums are 1, 2, ... K have mean (K + 1) / 2 and variance K (K + 1) / 12, a
+ * 16th of it per sample; three samples more belong to no full block. */
+static void stratified_samples_are_not_independent(void **state) {
+    (void)state;
+    enum { K = 9 };
+    mu_pixel even = {.samples = 0}, rising = {.samples = 0};
+    for (int i = 0; i < K * MU_BLOCK + 3; ++i) {
+        const float level = (float)(7 * i % MU_BLOCK),
+                    step = i % MU_BLOCK == 5 ? (float)(1 + i / MU_BLOCK) : 0;
+        mu_pixel_add(&even, &(mu_radiance){.rgb = {level, level, level}});
+        mu_pixel_add(&rising, &(mu_radiance){.rgb = {step, step, step}});
+        if (i + 1 == MU_BLOCK * MU_BLOCKS - 1) assert_true(mu_pixel_variance(&even) > 0.1);
+    }
+    /* Squares of 120 and sums of nine of them, rounded. */
+    assert_true(mu_pixel_variance(&even) < 100 * DBL_EPSILON);
+    const double expected = (K + 1) / 12.0 / (MU_BLOCK * MU_BLOCK);
+    assert_true(fabs(mu_pixel_variance(&rising) - expected) < 100 * DBL_EPSILON * expected);
+}
+
 static void not_finite_counts_as_black(void **state) {
     (void)state;
     mu_pixel pixel = {.samples = 0};
@@ -64,7 +84,7 @@ static void not_finite_counts_as_black(void **state) {
 static void noise_of_coin_tosses(void **state) {
     (void)state;
     mu_film film;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_true(mu_film_make(&film, 7, 5, &error));
     const uint32_t n = 64;
     for (uint32_t s = 0; s < n; ++s) {
@@ -89,7 +109,7 @@ static void absurd_sizes_are_refused(void **state) {
         {0, 1}, {1, 0}, {UINT32_MAX, 1}, {1, UINT32_MAX}, {INT32_MAX, INT32_MAX}, {2000000, 2000000}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
         mu_film film;
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         assert_false(mu_film_make(&film, sizes[i][0], sizes[i][1], &error));
         assert_true(error.text[0]);
         mu_film_free(&film);
@@ -101,7 +121,7 @@ static void absurd_sizes_are_refused(void **state) {
 
 static void checkpoint_returns_every_bit(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const char *file = in_folder("a.resume");
     mu_film film = noise_film(301, 67, 3), again; /* more than one batch of 2^14 pixels, the last one short */
     film.refused = 5;
@@ -116,7 +136,7 @@ static void checkpoint_returns_every_bit(void **state) {
 
 static void refused(const char *file, uint32_t width, uint32_t height, uint64_t key, const char *word) {
     mu_film film;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_true(mu_film_make(&film, width, height, &error));
     assert_false(mu_film_load(&film, file, key, &error));
     if (!strstr(error.text, word)) fail_msg("'%s' does not say '%s'", error.text, word);
@@ -140,7 +160,7 @@ static void patch(const char *from, const char *to, long at, size_t keep, unsign
 
 static void bad_checkpoints_are_refused(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const char *good = in_folder("good.resume"), *bad = in_folder("bad.resume");
     mu_film film = noise_film(20, 10, 2);
     assert_true(mu_film_save(&film, good, 7, &error));
@@ -171,6 +191,7 @@ static void bad_checkpoints_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixel_statistics),
+        cmocka_unit_test(stratified_samples_are_not_independent),
         cmocka_unit_test(not_finite_counts_as_black),
         cmocka_unit_test(noise_of_coin_tosses),
         cmocka_unit_test(absurd_sizes_are_refused),

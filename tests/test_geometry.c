@@ -302,7 +302,7 @@ static void test_grid_lines_have_their_material(void **state) {
 static void test_singular_maps_are_refused(void **state) {
     test_scene s = {0};
     mu_affine flat = test_identity();
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     (void)state;
     flat.row[2][2] = 0;
     test_add(&s, MU_SPHERE, &flat);

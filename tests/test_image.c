@@ -98,7 +98,7 @@ static float to_half(float x) {
 }
 
 static void exr_round_trip(_Bool half) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_film film = noise_film(53, 37, 3); /* three blocks of 16 lines, the last one short */
     const mu_film_settings settings = {.width = 53, .height = 37, .half = half};
     const char *file = in_folder(half ? "half.exr" : "float.exr");
@@ -188,7 +188,7 @@ static void exr_half(void **state) {
  * black. */
 static void exr_extremes(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     for (int half = 0; half < 2; ++half) {
         mu_film film;
         assert_true(mu_film_make(&film, 2, 1, &error));
@@ -234,7 +234,7 @@ static void tone_curve(void **state) {
 
 static void png_holds_the_curve(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_film film;
     const uint32_t width = 512;
     assert_true(mu_film_make(&film, width, 2, &error));

@@ -146,7 +146,7 @@ static void test_rectangle_irradiance(void **state) {
         mu_light light = {
             .kind = MU_RECTANGLE_LIGHT, .to_world = places[k], .size = {2, 1}, .scale = {1, 1, 1}};
         mu_scene scene = {.lights = &light, .light_count = 1};
-        mu_error error = {{0}};
+        mu_error error = {.text = ""};
         mu_lights *lights = mu_lights_build(&scene, &error);
         assert_non_null(lights);
         assert_int_equal(mu_lights_choices(lights), 1);
@@ -185,7 +185,7 @@ static void test_choice_of_light_is_accounted_for(void **state) {
                         .scale = {0.5f, 0.5f, 0.5f},
                         .to_world = {{{1, 0, 0, 3}, {0, -1, 0, 1}, {0, 0, -1, 5}}}}};
     mu_scene scene = {.lights = all, .light_count = 4};
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     mu_lights *lights = mu_lights_build(&scene, &error);
     assert_non_null(lights);
     assert_int_equal(mu_lights_choices(lights), 3);
@@ -218,7 +218,7 @@ static void test_dark_and_empty_scenes_have_nothing_to_draw(void **state) {
         {.kind = MU_RECTANGLE_LIGHT, .to_world = identity, .size = {0, 1}, .scale = {1, 1, 1}}};
     for (uint32_t count = 0; count <= 2; count++) {
         mu_scene scene = {.lights = dark, .light_count = count};
-        mu_error error = {{0}};
+        mu_error error = {.text = ""};
         mu_lights *lights = mu_lights_build(&scene, &error);
         assert_non_null(lights);
         assert_int_equal(mu_lights_choices(lights), 0);

@@ -171,7 +171,7 @@ static void test_jacobian(void **state) {
 static void test_the_table_keeps_its_word(void **state) {
     static const char *const ids[] = {"musurf.microfacet", "template.lambert"};
     for (size_t t = 0; t < 2; t++) {
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         const musurf_material_type *type = mu_plugins_type(*state, ids[t], &error);
         if (!type) fail_msg("%s", error.text);
         for (uint32_t i = 0; i < type->param_count; i++) {

@@ -61,7 +61,7 @@ static void a_full_disk_leaves_the_old_file(void **state) {
     for (rlim_t limit = 0; limit <= 16384; limit = limit ? 4 * limit : 256) {
         small.rlim_cur = limit;
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-        mu_error errors[3] = {{""}, {""}, {""}};
+        mu_error errors[3] = {{.text = ""}, {.text = ""}, {.text = ""}};
         assert_false(mu_image_write_exr(files[0], &film, &settings, &info, &errors[0]));
         assert_false(mu_image_write_png(files[1], &film, &settings, &info, &errors[1]));
         assert_false(mu_film_save(&film, files[2], 1, &errors[2]));
@@ -78,7 +78,7 @@ static void a_full_disk_leaves_the_old_file(void **state) {
 
 static void output_places(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_output output;
     assert_false(mu_output_check(in_folder("no/such/a.exr"), &error));
     assert_non_null(strstr(error.text, "No such file"));

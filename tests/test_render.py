@@ -153,8 +153,9 @@ class Render(unittest.TestCase):
 
     def test_noise_is_reached(self):
         """The error is recomputed from the image's own channels. A rule asked between passes that grow by a quarter
-        overshoots by up to a quarter; half the error needs four times the samples, so their ratio lies within
-        4/1.25 and 4 x 1.25, and the error's own error (3072 pixels, some 2 % in samples squared) widens that."""
+        overshoots by up to a quarter. Half the error needs four times the samples where they are independent, and fewer
+        where they are stratified; not fewer than twice, which would be an error that falls as 1/n. The error's own error
+        (3072 pixels, some 2 % in samples squared) widens that."""
         counts = []
         for limit in (0.006, 0.003):
             header, image = self.image("out.exr", "--noise", str(limit))
@@ -164,7 +165,20 @@ class Render(unittest.TestCase):
             counts.append(header["samples"])
             self.assertEqual(image["samples"].min(), image["samples"].max())
         self.assertGreater(counts[0], 18)  # not the least that the rule asks for
-        self.assertTrue(3 < counts[1] / counts[0] < 5.3, counts)
+        self.assertTrue(1.5 < counts[1] / counts[0] < 5.3, counts)
+
+    def test_variance_is_that_between_seeds(self):
+        """What the image says of its own error against the scatter of 24 images with other seeds, as a mean over 3072
+        pixels, whose own relative error is below sqrt(2/23/3072) x 3 = 2 % for tails like a Gaussian's; ours are longer:
+        10 %. The claim may only be too large: by stratification between blocks, or, below 128 samples, within them."""
+        for samples, most in ((16, 4.0), (256, 2.0)):
+            images = [self.image("out.exr", "--spp", str(samples), "--seed", str(seed))[1] for seed in range(24)]
+            y = numpy.array([0.2126 * i["R"] + 0.7152 * i["G"] + 0.0722 * i["B"] for i in images], dtype=float)
+            # R, G and B are halves: rounding adds (2^-12 y)^2 at most to what is seen
+            seen = y.var(axis=0, ddof=1).mean() - 0.5 * (2.0**-12 * y).var()
+            claimed = numpy.mean([i["variance"] for i in images])
+            print(f"{samples} samples: claimed / seen variance {claimed / seen:.2f}")
+            self.assertTrue(0.9 < claimed / seen < most, (samples, claimed, seen))
 
     # ----------------------------------------------------------------------------------- what the image says
 
@@ -245,6 +259,39 @@ class Render(unittest.TestCase):
         self.refuse(self.scene, "-o", "/proc/out.exr", *long, word="/proc/out.exr")
         self.assertEqual(self.files(), ["folder.exr", "scene.json"])
 
+    def test_inputs_are_not_replaced(self):
+        mesh = {"file": "tile.obj"}
+        pathlib.Path(self.path("tile.obj")).write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        scene = dict(SCENE, meshes={"tile": mesh}, objects=[{"mesh": "tile", "material": "clay"}])
+        scene["lights"] = [{"type": "environment", "image": "sky.partial.exr"}]
+        self.image("sky.partial.exr", "--size", "8x4", "--spp", "1")
+        pathlib.Path(self.scene).write_text(json.dumps(scene))
+        os.link(self.scene, self.path("other.json"))
+        before = {name: pathlib.Path(self.path(name)).read_bytes() for name in self.files()}
+        out = ["-o", self.path("out.exr")]
+        for arguments in ([*out, "--png", self.scene], [*out, "--png", self.path("other.json")],
+                          [*out, "--png", self.path("tile.obj")], ["-o", self.path("sky.partial.exr")],
+                          ["-o", self.path("sky.exr")]):
+            with self.subTest(arguments=arguments):
+                self.refuse(self.scene, *arguments, word="of which the scene is made")
+        self.assertEqual({name: pathlib.Path(self.path(name)).read_bytes() for name in self.files()}, before)
+
+    def test_a_signal_while_reading_ends_it(self):
+        os.mkfifo(self.path("never.json"))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([MUSURF, "render", self.path("never.json"), "-o", self.path("out.exr")]) as process:
+                time.sleep(0.3)
+                process.send_signal(number)
+                self.assertEqual(process.wait(timeout=10), 130)
+
+    def test_warnings_go_where_asked(self):
+        pathlib.Path(self.scene).write_text(json.dumps(dict(SCENE, lights=[{"type": "constant", "radiance": 1e6}])))
+        arguments = [self.scene, "-o", self.path("out.exr"), "--spp", "1"]
+        self.assertRegex(self.run_it(*arguments, "--progress=none").stderr, "warning: .*brighter than 65504")
+        events = [json.loads(line) for line in self.run_it(*arguments, "--progress=json").stderr.splitlines()]
+        self.assertIn("brighter", [event["text"] for event in events if event["event"] == "warning"][0])
+        self.assertEqual(self.run_it(*arguments, "--quiet").stderr, "")
+
     # ------------------------------------------------------------------------------------------------ full disks
 
     def test_full_disk_leaves_the_old_image(self):
@@ -282,10 +329,19 @@ class Render(unittest.TestCase):
         exr.read(self.path("out.exr"))
 
     def test_start_is_quick_and_without_openimageio(self):
-        arguments = [self.scene, "-o", self.path("out.exr"), "--size", "8x8", "--spp", "1", "--threads", "1", "--quiet"]
-        traced = self.run_it(*arguments, env=dict(os.environ, LD_DEBUG="files", LD_DEBUG_OUTPUT=self.path("ld")))
-        opened = "".join(pathlib.Path(self.path(name)).read_text() for name in self.files() if name.startswith("ld"))
-        self.assertIn("template_material.so", opened)  # the trace is one of this program
+        for scene in (self.scene, str(pathlib.Path(__file__).resolve().parent.parent / "scenes/first.json")):
+            with self.subTest(scene):
+                self.start_quickly(scene)
+
+    def start_quickly(self, scene):
+        arguments = [scene, "-o", self.path("out.exr"), "--size", "8x8", "--spp", "1", "--threads", "1", "--quiet"]
+        traced = dict(os.environ, LD_DEBUG="files", LD_DEBUG_OUTPUT=self.path("ld"))
+        self.run_it(*arguments, env=traced)
+        logs = [pathlib.Path(self.path(name)) for name in self.files() if name.startswith("ld")]
+        opened = "".join(log.read_text() for log in logs)
+        for log in logs:
+            log.unlink()
+        self.assertIn("_material.so", opened)  # the trace is one of this program
         self.assertNotIn("OpenImageIO", opened)
         if "libasan" in opened or "libtsan" in opened:
             self.skipTest("the start of an instrumented program says nothing")
@@ -296,7 +352,8 @@ class Render(unittest.TestCase):
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             walls.append(time.monotonic() - start)
             busy.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-        print(f"an 8 x 8 render from start to end: {1000 * min(walls):.1f} ms, {1000 * min(busy):.1f} ms of processor")
+        print(f"{os.path.basename(scene)}, 8 x 8, from start to end: {1000 * min(walls):.1f} ms, "
+              f"{1000 * min(busy):.1f} ms of processor")
         # The clock also measures what else the machine does; on an idle one it shows the same. Loading OpenImageIO
         # alone takes 400 ms of processor.
         self.assertLess(min(busy), 0.020)

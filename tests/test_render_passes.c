@@ -74,21 +74,21 @@ static void report(void *context, const mu_render_status *status) {
 
 static void checkpoint(void *context, const mu_film *film) {
     world *w = context;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_true(mu_film_save(film, w->file, 1, &error));
     w->checkpoints++;
 }
 
 static mu_film black(void) {
     mu_film film;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_true(mu_film_make(&film, WIDTH, HEIGHT, &error));
     return film;
 }
 
 static mu_render_end render(mu_film *film, world *w, uint32_t threads, uint32_t samples, double seconds,
                             double noise) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const mu_render_plan plan = {.sample = sample,
                                  .context = w,
                                  .scratch = 100,
@@ -144,7 +144,7 @@ static void every_thread_count_gives_the_sum(void **state) {
 /* Stopped again and again at places that depend on the machine, through a file each time. */
 static void interruptions_change_nothing(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const char *file = in_folder("stopped.resume");
     mu_film film = black();
     mu_render_end end;
@@ -167,7 +167,7 @@ static void interruptions_change_nothing(void **state) {
 
 static void checkpoints_rest_in_the_midst_of_a_pass(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     world w = {.slow_nanoseconds = 100000, .file = in_folder("periodic.resume")};
     mu_film film = black(), saved = black();
     assert_int_equal(render(&film, &w, 2, 8, 0, 0), MU_RENDER_DONE);

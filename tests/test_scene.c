@@ -16,7 +16,7 @@
 #define LAMBERT "{\"material\":\"template.lambert\"}"
 
 static mu_scene read_scene(void **state, const char *text) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_scene scene;
     const _Bool ok = mu_scene_read(&scene, test_scratch_text(state, "scene.json", text), &error);
     assert_string_equal(error.text, "");

@@ -188,7 +188,7 @@ static void test_messages_find_their_place(void **state) {
                  {"tint", "f:1:1: $: no"},
                  {"", "f:1:1: $: no"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        mu_error error = {""};
+        mu_error error = {.text = ""};
         mu_settings_fail(&root, cases[i].name, &error, "no");
         assert_string_equal(error.text, cases[i].message);
     }
@@ -203,7 +203,7 @@ static const musurf_plugin sound = {
 
 static void expect_plugin(const musurf_plugin *plugin, const musurf_material_type *offered,
                           const char *message) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     one_type[0] = offered;
     assert_int_equal(mu_plugin_check(plugin, "test", "x.so", &error), message[0] == '\0');
     assert_string_equal(error.text, message);

@@ -39,7 +39,7 @@ static float *mild_pixels(int width, int height, uint64_t seed) {
 static mu_sky sky_from(float *pixels, int width, int height, float rotation) {
     const mu_light light = {.kind = MU_ENVIRONMENT, .rotation = rotation, .scale = {1, 2, 0.5f}};
     mu_sky sky;
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     assert_true(mu_sky_make_from_pixels(&sky, &light, pixels, width, height, &error));
     return sky;
 }
@@ -47,7 +47,7 @@ static mu_sky sky_from(float *pixels, int width, int height, float rotation) {
 static mu_sky studio(float rotation) {
     const mu_light light = {.kind = MU_STUDIO, .rotation = rotation, .scale = {1, 1, 1}};
     mu_sky sky;
-    mu_error error = {{0}};
+    mu_error error = {.text = ""};
     assert_true(mu_sky_make_studio(&sky, &light, &error));
     return sky;
 }

@@ -15,7 +15,7 @@
 #include "core/render/utf8.h"
 
 static mu_document parsed(const char *text) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document document;
     if (!mu_document_parse(&document, "f", text, strlen(text), 1, &error)) fail_msg("%s", error.text);
     return document;
@@ -35,7 +35,7 @@ static void test_numbers(void **state) {
     const mu_place root = mu_place_root(&d), x = mu_place_member(&root, "x"), i = mu_place_member(&root, "i"),
                    v = mu_place_member(&root, "v"), s = mu_place_member(&root, "s"),
                    e = mu_place_member(&root, "e"), none = mu_place_member(&root, "none");
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     double out, three[3];
     long long whole;
     assert_true(mu_place_number(&x, 0, 1.5, &out, &error) && out == 1.5);
@@ -68,7 +68,7 @@ static void test_words(void **state) {
     const mu_place root = mu_place_root(&d), ndf = mu_place_member(&root, "ndf"),
                    good = mu_place_member(&root, "good"), flag = mu_place_member(&root, "flag"),
                    o = mu_place_member(&root, "o"), w = mu_place_member(&root, "w");
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     size_t index;
     _Bool truth;
     const char *text;
@@ -105,7 +105,7 @@ static void test_nearest(void **state) {
 /* A message is one line of printable text whatever is quoted in it. */
 static void test_messages(void **state) {
     (void)state;
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     assert_false(mu_fail(&error, "a\nb\x1b[31m\x7f \xc2\x9b \xff \xc3\xa9 %d", 7));
     assert_string_equal(error.text, "a?b?[31m? ? ? \xc3\xa9 7");
     assert_false(mu_fail(&error, "second"));
@@ -116,7 +116,7 @@ static void test_messages(void **state) {
         memset(text, 'x', sizeof text);
         for (size_t i = shift; i + 1 < 4000; i += 2) memcpy(text + i, "\xc3\xa9", 2);
         text[4000] = '\0';
-        mu_error cut = {""};
+        mu_error cut = {.text = ""};
         mu_fail(&cut, "%s", text);
         const size_t length = strlen(cut.text);
         assert_in_range(length, 1000, sizeof cut.text - 1);

@@ -61,7 +61,7 @@ static void check_relations(const run *r, uint64_t index, const mu_draw *draw, c
 
 static _Bool parse(run *r, mu_check_material *material, const char *json, const mu_draw *draw,
                    const double *m) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     pthread_mutex_lock(&r->lock);
     _Bool good = mu_check_material_parse(material, r->plugins, json, r->settings->precision, &error);
     if (good && m && !mu_plane_from_transform(&material->subject.plane, m, draw->alpha, draw->spread)) {

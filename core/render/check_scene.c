@@ -14,7 +14,7 @@ static _Bool collect(mu_check_materials *all, mu_plugins *plugins, const mu_plac
     all->items = items;
     mu_check_material *item = &items[all->count];
     mu_material test;
-    mu_error why = {""};
+    mu_error why = {.text = ""};
     if (!mu_material_read(&test, plugins, place, error)) return 0; /* wrong, not merely out of scope */
     mu_material_free(&test);
     if (!mu_check_material_read(item, plugins, place, precision, &why)) {

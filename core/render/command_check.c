@@ -122,7 +122,7 @@ static void complete(check_options *o) {
 }
 
 static int run(const check_options *o, mu_plugins *plugins, const mu_check_materials *all) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     struct timespec start, end;
     mu_tally *tally = malloc(sizeof *tally);
     if (!tally) return mu_refuse(&usage, "not enough memory");
@@ -166,7 +166,7 @@ int mu_command_check(int argc, char **argv) {
             code = MU_EXIT_REFUSED;
         }
     }
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     if (!scenes || !plugins) mu_fail(&error, "not enough memory");
     for (size_t i = 0; code == MU_EXIT_OK && i < scene_count && !error.text[0]; i++)
         mu_check_collect(&all, plugins, scenes[i], o.settings.precision, &error);

@@ -110,7 +110,7 @@ static _Bool answer(evaluation *e, const mu_document *document, mu_error *error)
 
 /* True unless standard output failed. */
 static _Bool answer_line(evaluation *e, mu_line status, const char *text, size_t length, size_t number) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document document = {0};
     _Bool good = 0;
     e->lines++;
@@ -187,7 +187,7 @@ int mu_command_eval(int argc, char **argv) {
     if (file < 0) return mu_refuse(&usage, "%s: cannot be opened: %s", input, strerror(errno));
     evaluation e = {.precision = precision ? MUSURF_DOUBLE : MUSURF_FLOAT,
                     .name = standard ? "stdin" : input};
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const int code =
         mu_query_cache_make(&e.cache, &error) ? answer_all(&e, file) : mu_refuse(&usage, "%s", error.text);
     mu_query_cache_free(&e.cache);

@@ -118,7 +118,7 @@ static json_t *collect(const musurf_plugin *plugin, const char *file, const musu
 }
 
 static int show(mu_plugins *plugins, const char *id, _Bool as_json, _Bool as_schema) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     const musurf_material_type *type = mu_plugins_type(plugins, id, &error);
     if (!type) {
         /* The build is known all the same; without it there would be nothing to report a bug with. */

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -26,6 +27,8 @@
 
 /* When the first signal came, in tenths of a second of steady time; 0: none yet. */
 static volatile sig_atomic_t interrupted;
+/* There is something to save. Before, while files are read, a signal quits at once. */
+static volatile sig_atomic_t rendering;
 
 /* A second signal quits at once, but not one that follows on the heels of the first: timeout(1) and terminals
  * with process groups send the same one twice. */
@@ -34,6 +37,7 @@ static void interrupt(int number) {
     (void)number;
     clock_gettime(CLOCK_MONOTONIC, &t);
     const int tenths = (int)((t.tv_sec * 10 + t.tv_nsec / 100000000) % 1000000000) + 1;
+    if (!rendering) _exit(MU_EXIT_INTERRUPTED);
     if (!interrupted)
         interrupted = tenths;
     else if (tenths - interrupted > 3)
@@ -67,6 +71,11 @@ typedef struct mu_job {
     uint64_t digest;
     _Bool digested, warned;
 } mu_job;
+
+/* An error whose warnings go where this render speaks. */
+static mu_error new_error(mu_job *job) {
+    return (mu_error){.warn = mu_progress_warn, .context = &job->progress};
+}
 
 static int complain(mu_job *job, const mu_error *error, int code) {
     mu_progress_clear(&job->progress);
@@ -146,7 +155,7 @@ static void report(void *job, const mu_render_status *status) {
 /* A checkpoint that cannot be saved is worth a word, not the render. */
 static void checkpoint(void *context, const mu_film *film) {
     mu_job *job = context;
-    mu_error error = {""};
+    mu_error error = new_error(job);
     if (mu_film_save(film, job->resume, digest(job), &error) || job->warned) return;
     job->warned = 1;
     mu_progress_note(&job->progress, "no checkpoint: %s", error.text);
@@ -177,7 +186,7 @@ static _Bool load_checkpoint(mu_job *job, uint32_t limit, mu_error *error) {
 /* What is there when the render stops early. */
 static int give_partial(mu_job *job) {
     uint32_t least, most;
-    mu_error error = {""};
+    mu_error error = new_error(job);
     const mu_image_info head = info(job);
     mu_film_samples(&job->film, &least, &most);
     if (!most) {
@@ -193,7 +202,7 @@ static int give_partial(mu_job *job) {
 }
 
 static int give_image(mu_job *job) {
-    mu_error error = {""}, other = {""};
+    mu_error error = new_error(job), other = new_error(job);
     const mu_image_info head = info(job);
     if (!mu_image_write_exr(job->options.output, &job->film, &job->scene.film, &head, &error)) {
         complain(job, &error, 0);
@@ -212,7 +221,7 @@ static int give_image(mu_job *job) {
 
 static int render(mu_job *job, uint32_t limit) {
     const mu_render_options *options = &job->options;
-    mu_error error = {""};
+    mu_error error = new_error(job);
     const mu_tracer tracer = {.scene = &job->scene, .geometry = job->geometry, .lights = job->lights};
     const mu_render_plan plan = {.sample = sample,
                                  .context = &tracer,
@@ -237,7 +246,7 @@ static int render(mu_job *job, uint32_t limit) {
 /* The names of the files, and whether they can be written. */
 static int name_files(mu_job *job, int argc, char **argv) {
     const mu_render_options *options = &job->options;
-    mu_error error = {""};
+    mu_error error = new_error(job);
     job->partial = with_ending(options->output, ".partial.exr");
     job->resume = with_ending(options->output, ".resume");
     job->command = command_line(argc, argv);
@@ -248,6 +257,29 @@ static int name_files(mu_job *job, int argc, char **argv) {
     const _Bool writable =
         mu_output_check(options->output, &error) && (!options->png || mu_output_check(options->png, &error));
     return writable ? MU_EXIT_OK : complain(job, &error, MU_EXIT_REFUSED);
+}
+
+/* Whether writing `output` would replace `input`. */
+static _Bool is_same_file(const char *output, const char *input) {
+    struct stat a, b;
+    return output && input && !stat(output, &a) && !stat(input, &b) && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+/* No output may replace, and none that is removed in the end be, what the scene is made of. */
+static _Bool keep_inputs(const mu_job *job, mu_error *error) {
+    const char *const outputs[] = {job->options.output, job->options.png, job->partial, job->resume};
+    const mu_scene *scene = &job->scene;
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; ++i) {
+        const char *input = is_same_file(outputs[i], job->options.scene) ? job->options.scene : NULL;
+        for (uint32_t k = 0; k < scene->mesh_count; ++k)
+            if (is_same_file(outputs[i], scene->meshes[k].file)) input = scene->meshes[k].file;
+        for (uint32_t k = 0; k < scene->light_count; ++k)
+            if (is_same_file(outputs[i], scene->lights[k].image)) input = scene->lights[k].image;
+        if (input)
+            return mu_fail(error, "%s: would replace %s, of which the scene is made", outputs[i], input);
+    }
+    return 1;
 }
 
 /* The scene with what the command line changes about it. */
@@ -264,10 +296,11 @@ static _Bool read_scene(mu_job *job, mu_error *error) {
 
 static int run(mu_job *job, int argc, char **argv) {
     const mu_render_options *options = &job->options;
-    mu_error error = {""};
+    mu_error error = new_error(job);
     const int named = options->output ? name_files(job, argc, argv) : MU_EXIT_OK;
     if (named != MU_EXIT_OK) return named;
-    if (!read_scene(job, &error)) return complain(job, &error, MU_EXIT_REFUSED);
+    if (!read_scene(job, &error) || (options->output && !keep_inputs(job, &error)))
+        return complain(job, &error, MU_EXIT_REFUSED);
 
     const uint32_t limit = options->samples                             ? (uint32_t)options->samples
                            : options->seconds > 0 || options->noise > 0 ? MU_MOST_SAMPLES
@@ -279,8 +312,9 @@ static int run(mu_job *job, int argc, char **argv) {
     job->geometry = mu_geometry_build(&job->scene, options->threads, &error);
     if (job->geometry) job->lights = mu_lights_build(&job->scene, &error);
     if (!job->lights) return complain(job, &error, MU_EXIT_REFUSED);
-    if (options->explain) mu_explain(&job->scene, job->lights, stdout);
-    fflush(stdout); /* before the long wait */
+    if (options->explain && !mu_explain(&job->scene, job->lights, stdout, &error))
+        return complain(job, &error, MU_EXIT_FAILED);
+    rendering = 1;
     return options->output ? render(job, limit) : MU_EXIT_OK;
 }
 

@@ -94,7 +94,7 @@ static _Bool draw(const sampling *how, const mu_document *document, mu_query_cac
 }
 
 static int sample_file(const sampling *how, const char *file) {
-    mu_error error = {""};
+    mu_error error = {.text = ""};
     mu_document document;
     if (!mu_document_read(&document, file, &error)) return mu_refuse(&usage, "%s", error.text);
     mu_query_cache cache;

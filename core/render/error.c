@@ -17,16 +17,11 @@ static _Bool is_control(const char *at, size_t count) {
     return count == 2 && first == 0xc2 && (unsigned char)at[1] < 0xa0;
 }
 
-_Bool mu_fail(mu_error *error, const char *format, ...) {
-    if (!error || error->text[0]) return 0;
-
-    va_list arguments;
-    va_start(arguments, format);
+static void write_line(mu_error *error, const char *format, va_list arguments) {
     const int wanted = vsnprintf(error->text, sizeof error->text, format, arguments);
-    va_end(arguments);
     if (wanted <= 0) {
         strcpy(error->text, "unknown error");
-        return 0;
+        return;
     }
 
     size_t length = strlen(error->text);
@@ -46,5 +41,25 @@ _Bool mu_fail(mu_error *error, const char *format, ...) {
         }
     }
     strcpy(out, cut ? "..." : "");
+}
+
+_Bool mu_fail(mu_error *error, const char *format, ...) {
+    if (!error || error->text[0]) return 0;
+    va_list arguments;
+    va_start(arguments, format);
+    write_line(error, format, arguments);
+    va_end(arguments);
     return 0;
+}
+
+void mu_warn(const mu_error *error, const char *format, ...) {
+    mu_error line = {.text = ""};
+    va_list arguments;
+    va_start(arguments, format);
+    write_line(&line, format, arguments);
+    va_end(arguments);
+    if (error && error->warn)
+        error->warn(error->context, line.text);
+    else
+        fprintf(stderr, "musurf: warning: %s\n", line.text);
 }

@@ -65,7 +65,7 @@ static int collect(struct dl_phdr_info *info, size_t size, void *context) {
     return 0;
 }
 
-void mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out) {
+_Bool mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out, mu_error *error) {
     const mu_feature *list = mu_feature_list();
     const uint32_t bits = mu_features_of(scene);
     json_t *needed = json_array(), *left_out = json_object(), *materials = json_array(),
@@ -90,7 +90,8 @@ void mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out) {
                   "left_out", left_out, "materials", materials, "meshes", meshes, "lights", "table_bytes",
                   (json_int_t)mu_lights_table_bytes(lights), "image_bytes",
                   (json_int_t)mu_lights_image_bytes(lights), "plugins", plugins, "libraries", libraries);
-    if (!all || json_dumpf(all, out, JSON_INDENT(2)) || fputc('\n', out) == EOF)
-        fprintf(stderr, "musurf: warning: --explain could not be written\n");
+    const _Bool written =
+        all && !json_dumpf(all, out, JSON_INDENT(2)) && fputc('\n', out) != EOF && fflush(out) != EOF;
     json_decref(all);
+    return written || mu_fail(error, "--explain cannot be written");
 }

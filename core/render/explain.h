@@ -11,6 +11,6 @@
 /* Call it once everything is built. Bytes are those of what was built, and the shared objects listed are
  * those in the process at that moment, as the dynamic linker tells them: neither is what the program believes
  * of itself. */
-void mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out);
+_Bool mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out, mu_error *error);
 
 #endif

@@ -15,7 +15,7 @@
     X(ORTHOGRAPHIC,          "orthographic",          "parallel camera rays")                                          \
     X(RECTANGLES,            "rectangles",            "Embree quad geometry")                                          \
     X(SPHERES,               "spheres",               "Embree user geometry with the exact quadric")                   \
-    X(MESHES,                "meshes",                "assimp's import and Embree triangle geometry")                  \
+    X(MESHES,                "meshes",                "reading of mesh files, and Embree triangle geometry")           \
     X(INSTANCES,             "instances",             "a second level of boxes, and rays transformed into it")         \
     X(MESH_TANGENTS,         "mesh_tangents",         "tangents of mesh vertices")                                     \
     X(GRIDS,                 "grids",                 "a second material chosen by texture coordinates")               \

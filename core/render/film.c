@@ -47,7 +47,12 @@ _Bool mu_pixel_add(mu_pixel *pixel, const mu_radiance *sample) {
     if (finite) {
         for (int i = 0; i < 3; ++i) pixel->rgb[i] += rgb[i];
         pixel->luminance2 += y * y;
+        pixel->block += y;
         pixel->hits += sample->hit;
+    }
+    if (pixel->samples % MU_BLOCK == 0) {
+        pixel->block2 += pixel->block * pixel->block;
+        pixel->block = 0;
     }
     for (int i = 0; i < 3; ++i) {
         pixel->albedo[i] += ((finite ? sample->albedo[i] : 0) - pixel->albedo[i]) * share;
@@ -62,8 +67,12 @@ void mu_pixel_rgb(const mu_pixel *pixel, double rgb[3]) {
 
 double mu_pixel_variance(const mu_pixel *pixel) {
     if (pixel->samples < 2) return 0;
-    const double n = pixel->samples, mean = luminance(pixel->rgb) / n;
-    const double variance = (pixel->luminance2 / n - mean * mean) / (n - 1);
+    const double whole = luminance(pixel->rgb);
+    double n = pixel->samples, sum = whole, sum2 = pixel->luminance2, each = 1;
+    if (pixel->samples >= MU_BLOCK * MU_BLOCKS) {
+        n = pixel->samples / MU_BLOCK, sum = whole - pixel->block, sum2 = pixel->block2, each = MU_BLOCK;
+    }
+    const double mean = sum / n, variance = (sum2 / n - mean * mean) / ((n - 1) * each * each);
     return variance > 0 ? variance : 0; /* rounding may leave a constant pixel below 0 */
 }
 

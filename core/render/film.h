@@ -17,10 +17,16 @@
 
 struct mu_radiance;
 
-/* One cache line. */
+/* Samples of a pixel are stratified, so their own variance tells too much. Those of one block of consecutive ones are
+ * stratified among themselves, and blocks are close to independent of each other: the variance of the blocks' sums
+ * counts most of what stratification gains. Below MU_BLOCKS of them that would be too rough a guess. */
+enum { MU_BLOCK = 16, MU_BLOCKS = 8 };
+
 typedef struct mu_pixel {
-    double rgb[3];              /* sums over samples */
-    double luminance2;          /* sum of squares of luminance (Rec. 709), for the variance */
+    double rgb[3];      /* sums over samples */
+    double luminance2;  /* sum of squares of luminance (Rec. 709), for the variance */
+    double block;       /* luminance of the block that is not full yet */
+    double block2;      /* sum of squares of the full blocks' luminance */
     float albedo[3], normal[3]; /* means over samples: a float sum would stall after millions of them */
     uint32_t hits;              /* samples whose camera ray hit something */
     uint32_t samples;
@@ -47,8 +53,8 @@ double mu_film_noise(const mu_film *film);
 _Bool mu_pixel_add(mu_pixel *pixel, const struct mu_radiance *sample);
 /* Mean radiance. */
 void mu_pixel_rgb(const mu_pixel *pixel, double rgb[3]);
-/* Variance of the mean luminance: the square of its standard error. 0 under 2 samples, where it is unknown.
- */
+/* Variance of the mean luminance: the square of its standard error; on the safe side, and far so below MU_BLOCK *
+ * MU_BLOCKS samples where they count as independent. 0 under 2 samples, where it is unknown. */
 double mu_pixel_variance(const mu_pixel *pixel);
 
 /* The exact sums, so that a render can go on where it stopped. `key` must match: it is a digest of scene and

@@ -27,14 +27,14 @@ typedef struct mu_state_head {
     double seconds;
 } mu_state_head;
 
-#define MAGIC "musurf film v1\n"
+#define MAGIC "musurf film v2\n"
 #define ORDER 0x01020304u
 
 static_assert(sizeof MAGIC == 16, "the magic fills its field");
-static_assert(sizeof(mu_pixel) == 64 && sizeof(mu_state_head) == 64,
+static_assert(sizeof(mu_pixel) == 80 && sizeof(mu_state_head) == 64,
               "no padding: every byte written is defined");
 
-enum { BATCH = 1 << 14 }; /* pixels handed to the file at once: 1 MiB */
+enum { BATCH = 1 << 14 }; /* pixels handed to the file at once */
 
 static uint32_t checksum(uint32_t crc, const void *data, size_t bytes) {
     return (uint32_t)crc32_z(crc, data, bytes);

@@ -134,7 +134,7 @@ static _Bool fill(mu_geometry *geometry, mu_error *error) {
 
 mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error *error) {
     char config[64];
-    mu_error embree = {""};
+    mu_error embree = {.text = ""};
     mu_geometry *geometry = calloc(1, sizeof *geometry);
     if (!geometry) return mu_fail(error, "geometry: not enough memory"), NULL;
     geometry->scene = scene;

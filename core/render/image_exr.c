@@ -42,14 +42,18 @@ typedef union mu_element { /* four bytes of a line: what the library's packing r
     uint32_t count;
 } mu_element;
 
+#define HALF_MAX 65504.0
+
 static float bounded(double value, _Bool half) {
-    const double most = half ? 65504.0 : (double)FLT_MAX;
+    const double most = half ? HALF_MAX : (double)FLT_MAX;
     return (float)(value > most ? most : value < -most ? -most : value);
 }
 
-static void fill(mu_element *out, size_t stride, const mu_pixel *pixel, _Bool half) {
+/* True if the pixel is too bright for its kind of number. */
+static _Bool fill(mu_element *out, size_t stride, const mu_pixel *pixel, _Bool half) {
     double rgb[3];
     mu_pixel_rgb(pixel, rgb);
+    const _Bool clamped = half && fmax(rgb[0], fmax(rgb[1], rgb[2])) > HALF_MAX;
     for (size_t c = 0; c < 3; ++c) {
         out[c * stride].number = bounded(rgb[c], half);
         out[(4 + c) * stride].number = bounded((double)pixel->albedo[c], half);
@@ -58,6 +62,7 @@ static void fill(mu_element *out, size_t stride, const mu_pixel *pixel, _Bool ha
     out[3 * stride].number = pixel->samples ? (float)((double)pixel->hits / pixel->samples) : 0;
     out[VARIANCE * stride].number = bounded(mu_pixel_variance(pixel), 0);
     out[SAMPLES * stride].count = pixel->samples;
+    return clamped;
 }
 
 /* -------------------------------------------------------------------------------------------------- header
@@ -121,7 +126,7 @@ static exr_result_t put_head(exr_context_t exr, const mu_film *film, const mu_fi
  */
 
 static exr_result_t put_pixels(exr_context_t exr, const mu_film *film, _Bool half, mu_element *block,
-                               size_t lines) {
+                               size_t lines, size_t *clamped) {
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t code = EXR_ERR_SUCCESS;
     const size_t width = film->width, stride = width * lines; /* elements from one channel to the next */
@@ -133,7 +138,7 @@ static exr_result_t put_pixels(exr_context_t exr, const mu_film *film, _Bool hal
             y ? exr_encoding_update(exr, 0, &chunk, &pipe) : exr_encoding_initialize(exr, 0, &chunk, &pipe);
         if (code) break;
         for (size_t i = 0; i < (size_t)chunk.height * width; ++i)
-            fill(block + i, stride, &film->pixels[y * width + i], half);
+            *clamped += fill(block + i, stride, &film->pixels[y * width + i], half);
         for (int16_t c = 0; c < pipe.channel_count;
              ++c) { /* the library keeps channels in alphabetical order */
             exr_coding_channel_info_t *channel = &pipe.channels[c];
@@ -164,17 +169,25 @@ _Bool mu_image_write_exr(const char *file, const mu_film *film, const mu_film_se
     exr_result_t code = exr_start_write(&exr, file, EXR_WRITE_FILE_DIRECTLY, &start);
     const _Bool started = !code;
     int32_t lines = 0;
+    size_t clamped = 0;
     code = code ? code : put_head(exr, film, settings, info);
     code = code ? code : exr_write_header(exr);
     code = code ? code : exr_get_scanlines_per_chunk(exr, 0, &lines);
     mu_element *block = code ? NULL : calloc((size_t)lines * film->width * CHANNELS, sizeof *block);
     if (!code)
-        code = block ? put_pixels(exr, film, settings->half, block, (size_t)lines) : EXR_ERR_OUT_OF_MEMORY;
+        code = block ? put_pixels(exr, film, settings->half, block, (size_t)lines, &clamped)
+                     : EXR_ERR_OUT_OF_MEMORY;
     free(block);
     if (started) {
         const exr_result_t last = exr_finish(&exr); /* writes the table of blocks */
         code = code ? code : last;
     }
+    if (clamped)
+        mu_warn(
+            error,
+            "%s: %zu pixels are brighter than %.0f and written as that; \"pixels\": \"float\" in the film "
+            "would keep them",
+            file, clamped, HALF_MAX);
     if (!code || output.trouble) return mu_output_commit(&output, error);
     mu_output_discard(&output);
     return mu_fail(error, "%s: cannot be written: %s", file, exr_get_default_error_message(code));

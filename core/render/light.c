@@ -84,7 +84,7 @@ static _Bool build(mu_lights *lights, const mu_scene *scene, mu_error *error) {
             mu_rectangle_light_make(&lights->rectangles[i], light);
         else if (light->kind != MU_DIRECTIONAL)
             lights->around = i;
-        mu_error reason = {""};
+        mu_error reason = {.text = ""};
         if (light->kind == MU_ENVIRONMENT && !mu_sky_make_environment(&lights->sky, light, &reason))
             return mu_fail(error, "%s%s%s", light->place ? light->place : "", light->place ? ": " : "",
                            reason.text);

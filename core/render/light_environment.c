@@ -40,9 +40,9 @@ _Bool mu_sky_make_environment(mu_sky *sky, const mu_light *light, mu_error *erro
     if (!pixels) return 0;
     const size_t count = (size_t)width * (size_t)height, changed = clean(pixels, count);
     if (changed)
-        fprintf(stderr,
-                "musurf: warning: %s: %zu of %zu pixels were negative, not finite or above %g; clamped\n",
-                light->image, changed, count, (double)BRIGHTEST);
+        mu_warn(error, "%s%s%s: %zu of %zu pixels were negative, not finite or above %g; clamped",
+                light->place ? light->place : "", light->place ? ": " : "", light->image, changed, count,
+                (double)BRIGHTEST);
     return mu_sky_make_from_pixels(sky, light, pixels, width, height, error);
 }
 

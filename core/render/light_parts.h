@@ -39,7 +39,9 @@ void mu_environment_radiance(const mu_sky *sky, float u, float v, float radiance
 void mu_environment_means(const mu_sky *sky, float *luminance);
 /* The studio, unrotated and unscaled. */
 void mu_studio_radiance(mu_vec3 direction, float radiance[3]);
-void mu_studio_means(const float scale[3], uint32_t width, uint32_t height, float *luminance);
+/* A raster to draw from, of cells of 1.4 degrees: well below the width of the studio's soft edges. */
+enum { MU_STUDIO_WIDTH = 256, MU_STUDIO_HEIGHT = 128 };
+void mu_studio_means(const float scale[3], float *luminance);
 
 /* -------------------------------------------------------------------------------------------- rectangle */
 

@@ -9,21 +9,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The studio's raster for drawing: 1.4 degrees, well below the width of its soft edges. */
-enum { STUDIO_WIDTH = 256, STUDIO_HEIGHT = 128 };
-
 static _Bool make(mu_sky *sky, const mu_light *light, mu_error *error) {
     for (int c = 0; c < 3; c++) sky->scale[c] = light->scale[c];
     sky->turn[0] = cosf(light->rotation);
     sky->turn[1] = sinf(light->rotation);
-    const uint32_t width = sky->width ? (uint32_t)sky->width : STUDIO_WIDTH;
-    const uint32_t height = sky->width ? (uint32_t)sky->height : STUDIO_HEIGHT;
+    const uint32_t width = sky->width ? (uint32_t)sky->width : MU_STUDIO_WIDTH;
+    const uint32_t height = sky->width ? (uint32_t)sky->height : MU_STUDIO_HEIGHT;
     float *means = malloc((size_t)width * height * sizeof *means);
     if (!means) return mu_fail(error, "not enough memory for an environment of %u x %u", width, height);
     if (sky->width)
         mu_environment_means(sky, means);
     else
-        mu_studio_means(sky->scale, width, height, means);
+        mu_studio_means(sky->scale, means);
     const _Bool made = mu_sphere_table_make(&sky->table, width, height, means, error);
     for (uint32_t row = 0; made && sky->table.height && row < height; row++) {
         double sum = 0;

@@ -47,7 +47,7 @@ static int refuse_command(const char *word) {
     const char *known[COMMAND_COUNT + 1] = {NULL};
     for (int i = 0; i < COMMAND_COUNT; i++) known[i] = commands[i].name;
     const char *const nearest = mu_nearest(word, known);
-    mu_error line = {""};
+    mu_error line = {.text = ""};
     if (nearest)
         mu_fail(&line, "there is no command \"%.60s\"; did you mean \"%s\"?", word, nearest);
     else

@@ -18,10 +18,10 @@ typedef struct listener {
 static void on_message(void *context, musurf_severity severity, uint32_t param, const char *text) {
     const listener *l = context;
     const musurf_param *p = mu_type_find_id(l->type, param);
-    mu_error warning = {""};
+    mu_error warning = {.text = ""};
     mu_error *out = severity == MUSURF_ERROR ? l->error : &warning;
     mu_settings_fail(l->place, p ? p->name : "", out, text ? text : "");
-    if (severity == MUSURF_WARNING) fprintf(stderr, "musurf: warning: %s\n", warning.text);
+    if (severity == MUSURF_WARNING) mu_warn(l->error, "%s", warning.text);
 }
 
 static _Bool compile(mu_material *material, const mu_settings *settings, const mu_place *place,
@@ -111,7 +111,7 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
     const mu_place id = mu_place_member(place, "material"), jacobian = mu_place_member(place, "jacobian");
     const char *name;
     if (!mu_place_string(&id, &name, error)) return 0;
-    mu_error why = {""};
+    mu_error why = {.text = ""};
     material->type = mu_plugins_type(plugins, name, &why);
     if (!material->type) return mu_place_fail(&id, error, "%s", why.text);
 

@@ -25,8 +25,8 @@
 typedef struct mu_gather {
     const struct aiScene *file;
     mu_mesh *mesh;
-    uint32_t dropped;
-    _Bool has_uvs;
+    mu_mesh_notes notes;
+    _Bool has_uvs, lacks_uvs; /* some parts do, some do not */
     mu_error *error;
 } mu_gather;
 
@@ -39,11 +39,11 @@ static const struct aiScene *import(const char *file) {
                                    aiComponent_TANGENTS_AND_BITANGENTS);
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const struct aiScene *scene = aiImportFileExWithProperties(
-        file,
-        aiProcess_ValidateDataStructure | aiProcess_RemoveComponent | aiProcess_Triangulate |
-            aiProcess_SortByPType | aiProcess_JoinIdenticalVertices,
-        NULL, settings);
+    const struct aiScene *scene =
+        aiImportFileExWithProperties(file,
+                                     aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
+                                         aiProcess_Triangulate | aiProcess_SortByPType,
+                                     NULL, settings);
     aiReleasePropertyStore(settings);
     return scene;
 }
@@ -60,14 +60,38 @@ static void count(mu_gather *gather, const struct aiNode *node, size_t *vertices
         const struct aiMesh *part = gather->file->mMeshes[node->mMeshes[i]];
         *vertices += part->mNumVertices;
         *triangles += part->mNumFaces;
-        gather->has_uvs = gather->has_uvs && part->mTextureCoords[0];
+        *(part->mTextureCoords[0] ? &gather->has_uvs : &gather->lacks_uvs) = 1;
     }
     for (unsigned i = 0; i < node->mNumChildren; ++i) count(gather, node->mChildren[i], vertices, triangles);
 }
 
+/* Asked of the file's own vertices: joining would merge one that is not a number into another. */
+static _Bool check_finite(const mu_gather *gather, const struct aiVector3D *vectors, unsigned count,
+                          const char *what) {
+    for (unsigned i = 0; vectors && i < count; ++i)
+        if (!isfinite(vectors[i].x) || !isfinite(vectors[i].y) || !isfinite(vectors[i].z))
+            return mu_fail(gather->error, "%s: vertex %u has a %s of (%g, %g, %g); must be finite",
+                           gather->mesh->file, i, what, (double)vectors[i].x, (double)vectors[i].y,
+                           (double)vectors[i].z);
+    return 1;
+}
+
+static _Bool check_and_join(mu_gather *gather) {
+    for (unsigned i = 0; i < gather->file->mNumMeshes; ++i) {
+        const struct aiMesh *part = gather->file->mMeshes[i];
+        if (!check_finite(gather, part->mVertices, part->mNumVertices, "position") ||
+            !check_finite(gather, part->mNormals, part->mNumVertices, "normal") ||
+            !check_finite(gather, part->mTextureCoords[0], part->mNumVertices, "texture coordinate"))
+            return 0;
+    }
+    if (aiApplyPostProcessing(gather->file, aiProcess_JoinIdenticalVertices)) return 1;
+    gather->file = NULL; /* assimp has released it */
+    return mu_fail(gather->error, "%s: cannot be read as a mesh: %s", gather->mesh->file, aiGetErrorString());
+}
+
 static _Bool put(mu_gather *gather, float *out, mu_dvec3 v, double limit, const char *what) {
     if (!(fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit))
-        return mu_fail(gather->error, "%s: vertex %u has a %s of (%g, %g, %g); must be finite and within %g",
+        return mu_fail(gather->error, "%s: vertex %u has a %s of (%g, %g, %g); must be within %g",
                        gather->mesh->file, (unsigned)gather->mesh->vertex_count, what, v.x, v.y, v.z, limit);
     out[0] = (float)v.x;
     out[1] = (float)v.y;
@@ -129,7 +153,7 @@ static _Bool add_part(mu_gather *gather, const struct aiMesh *part, const mu_map
                 base + face->mIndices[k]; /* mirrored: keep the outside */
         }
         if (is_degenerate(mesh, corner))
-            ++gather->dropped;
+            ++gather->notes.dropped;
         else
             ++mesh->triangle_count;
     }
@@ -155,8 +179,9 @@ static _Bool gather_all(mu_gather *gather) {
     size_t vertices = 0, triangles = 0;
     struct aiMatrix4x4 identity;
     aiIdentityMatrix4(&identity);
-    gather->has_uvs = 1;
     count(gather, gather->file->mRootNode, &vertices, &triangles);
+    gather->notes.uvs_lost = gather->has_uvs && gather->lacks_uvs;
+    gather->has_uvs = !gather->lacks_uvs;
     if (!triangles) return mu_fail(gather->error, "%s: the mesh is empty: it has no faces", mesh->file);
     if (vertices > 0x40000000u || triangles > 0x40000000u)
         return mu_fail(gather->error, "%s: %zu triangles are more than 2^30", mesh->file, triangles);
@@ -169,7 +194,7 @@ static _Bool gather_all(mu_gather *gather) {
     if (!add_node(gather, gather->file->mRootNode, &identity)) return 0;
     if (!mesh->triangle_count)
         return mu_fail(gather->error, "%s: the mesh is empty: all its %u triangles have no area", mesh->file,
-                       (unsigned)gather->dropped);
+                       (unsigned)gather->notes.dropped);
     return mu_mesh_fill_normals(mesh, gather->error);
 }
 
@@ -184,9 +209,9 @@ static _Bool check_format(const char *file, mu_error *error) {
     return mu_fail(error, "%s: not a mesh file; must be .obj, .ply, .gltf or .glb", file);
 }
 
-_Bool mu_mesh_read(mu_mesh *mesh, const char *file, uint32_t *dropped, mu_error *error) {
-    mu_gather gather = {NULL, mesh, 0, 0, error};
-    *dropped = 0;
+_Bool mu_mesh_read(mu_mesh *mesh, const char *file, mu_mesh_notes *notes, mu_error *error) {
+    mu_gather gather = {.mesh = mesh, .error = error};
+    *notes = gather.notes;
     memset(mesh, 0, sizeof *mesh);
     if (access(file, R_OK)) return mu_fail(error, "%s: %s", file, strerror(errno));
     if (!check_format(file, error)) return 0;
@@ -199,10 +224,10 @@ _Bool mu_mesh_read(mu_mesh *mesh, const char *file, uint32_t *dropped, mu_error 
     else if (!gather.file->mRootNode || !gather.file->mNumMeshes)
         ok = mu_fail(error, "%s: the mesh is empty: it has no faces", file);
     else
-        ok = gather_all(&gather);
+        ok = check_and_join(&gather) && gather_all(&gather);
     if (gather.file) aiReleaseImport(gather.file);
     if (!ok) mu_mesh_free(mesh);
-    *dropped = gather.dropped;
+    *notes = gather.notes;
     return ok;
 }
 

@@ -6,9 +6,15 @@
 
 #include "core/render/scene.h"
 
-/* Fails on files that cannot be read, empty meshes and non-finite vertices. Degenerate triangles are dropped and
- * counted in *dropped. Missing normals are computed (smooth, angle-weighted). */
-_Bool mu_mesh_read(mu_mesh *mesh, const char *file, uint32_t *dropped, mu_error *error);
+/* What was left out of a file that could be read. */
+typedef struct mu_mesh_notes {
+    uint32_t dropped; /* triangles without area */
+    _Bool uvs_lost;   /* some of its parts have texture coordinates, some not: none are taken */
+} mu_mesh_notes;
+
+/* Fails on files that cannot be read, empty meshes and non-finite vertices. Missing normals are computed (smooth,
+ * angle-weighted). */
+_Bool mu_mesh_read(mu_mesh *mesh, const char *file, mu_mesh_notes *notes, mu_error *error);
 /* Continuous per-vertex tangents: along dp/du where there are UVs, else a smooth field over the surface. */
 _Bool mu_mesh_make_tangents(mu_mesh *mesh, mu_error *error);
 void mu_mesh_free(mu_mesh *mesh);

@@ -76,7 +76,10 @@ static _Bool add_header_line(mu_ply *ply, const char *line) {
         mu_ply_element *element = &ply->elements[ply->element_count++];
         if (sscanf(line, "element %63s %llu", element->name, &element->count) != 2) return 0;
         if (!strcmp(element->name, "vertex")) ply->vertices = element->count;
-        return element->count <= 1ull << 30;
+        if (element->count > 1ull << 30)
+            return mu_fail(ply->error, "%s: %llu of element %s are more than 2^30", ply->file, element->count,
+                           element->name);
+        return 1;
     }
     if (!strncmp(line, "property ", 9)) return add_property(ply, line);
     return !strncmp(line, "comment", 7) || !strncmp(line, "obj_info", 8) || line[0] == '\0';

@@ -8,7 +8,7 @@
  * triangles, each projected into the vertex' tangent plane and normalised, are summed with the corners'
  * angles as weights, apart for either handedness (MikkTSpace does the same): a vertex where both meet, on the
  * axis of mirrored texture coordinates, is split in two. Beyond MikkTSpace, vertices at the same place with
- * the same normal and handedness share one tangent when theirs are within 60 degrees: the seam where a
+ * the same normal and handedness take the sum of those within 60 degrees of their own: the seam where a
  * cylinder's u goes from 1 back to 0 is no seam of the field. The fourth component is the handedness: dp/dv =
  * w (n x t).
  *
@@ -109,15 +109,18 @@ static void accumulate(const mu_mesh *mesh, const signed char *sign, mu_dvec3 *s
     }
 }
 
-/* Shares tangents within the run order[first..last): greedily, the lowest index leads. */
+/* Within the run order[first..last), each takes the sum over those that are within 60 degrees of its own. */
 static void share(const uint32_t *order, uint32_t first, uint32_t last, const mu_dvec3 *sums,
                   const signed char *hand, mu_dvec3 *shared) {
     for (uint32_t i = first; i < last; ++i) {
-        const mu_dvec3 own = mu_dnormalise(sums[order[i]]);
+        const mu_dvec3 own = sums[order[i]];
         shared[order[i]] = mu_d3(0, 0, 0);
-        for (uint32_t j = first; j < last; ++j)
-            if (hand[order[j]] == hand[order[i]] && mu_ddot(own, mu_dnormalise(sums[order[j]])) > 0.5)
-                shared[order[i]] = mu_dadd(shared[order[i]], sums[order[j]]);
+        for (uint32_t j = first; j < last; ++j) {
+            const mu_dvec3 other = sums[order[j]];
+            if (hand[order[j]] == hand[order[i]] &&
+                mu_ddot(own, other) > 0.5 * mu_dlength(own) * mu_dlength(other))
+                shared[order[i]] = mu_dadd(shared[order[i]], other);
+        }
     }
 }
 

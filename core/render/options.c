@@ -19,7 +19,7 @@ int mu_refuse(const mu_usage *usage, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    mu_error line = {""};
+    mu_error line = {.text = ""};
     mu_fail(&line, "%s", text); /* makes it printable */
     fprintf(stderr, "musurf %s: %s\n", usage->command, line.text);
     return MU_EXIT_REFUSED;

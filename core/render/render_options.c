@@ -162,7 +162,7 @@ _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, 
     else if (!options->output && !options->explain)
         mu_refuse(usage, "no output is named; -o OUT.exr is needed");
     else if (options->output && !ends_in(options->output, ".exr"))
-        mu_refuse(usage, "-o is \"%s\"; it must end in .exr (a PNG preview is made by --png)",
+        mu_refuse(usage, "-o is \"%s\"; it must be a name that ends in .exr (a PNG preview is made by --png)",
                   options->output);
     else if (options->png && !options->output)
         mu_refuse(usage, "--png needs -o OUT.exr as well");

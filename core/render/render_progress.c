@@ -75,22 +75,30 @@ void mu_progress_report(mu_progress *progress, const mu_render_status *status) {
     mu_json_write(&progress->json, stderr);
 }
 
-void mu_progress_note(mu_progress *progress, const char *format, ...) {
-    char text[1024];
-    va_list arguments;
+static void say(mu_progress *progress, const char *event, const char *before, const char *text) {
     if (progress->show == MU_SHOW_NOTHING) return;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
     mu_progress_clear(progress);
     if (progress->show == MU_SHOW_JSON) {
         mu_json_begin(&progress->json);
-        mu_json_string(&progress->json, "event", "note");
+        mu_json_string(&progress->json, "event", event);
         mu_json_string(&progress->json, "text", text);
         mu_json_write(&progress->json, stderr);
     } else {
-        fprintf(stderr, "musurf render: %s\n", text);
+        fprintf(stderr, "musurf render: %s%s\n", before, text);
     }
+}
+
+void mu_progress_note(mu_progress *progress, const char *format, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    say(progress, "note", "", text);
+}
+
+void mu_progress_warn(void *progress, const char *text) {
+    say(progress, "warning", "warning: ", text);
 }
 
 void mu_progress_end(mu_progress *progress, const char *event, const char *file, const mu_film *film) {

@@ -21,6 +21,8 @@ void mu_progress_report(mu_progress *progress, const mu_render_status *status);
 void mu_progress_clear(mu_progress *progress);
 /* A remark in between. */
 void mu_progress_note(mu_progress *progress, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The same as mu_error's warn wants it; the context is the progress. */
+void mu_progress_warn(void *progress, const char *text);
 /* The last line: `event` is "done" or "interrupted", `file` the image that was written, or NULL. */
 void mu_progress_end(mu_progress *progress, const char *event, const char *file, const mu_film *film);
 

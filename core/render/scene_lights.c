@@ -41,7 +41,7 @@ static _Bool read_image(mu_reader *reader, const mu_place *place, mu_light *ligh
         return mu_place_fail(&image, reader->error, "%.500s: %s", light->image, strerror(errno));
     char text[640];
     snprintf(text, sizeof text, "%.500s is missing; the studio lights the scene instead", light->image);
-    mu_scene_warn(&image, text);
+    mu_scene_warn(reader, &image, text);
     free(light->image);
     light->image = NULL;
     light->kind = MU_STUDIO;

@@ -15,19 +15,21 @@
 static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, uint32_t *out) {
     const mu_place place = mu_place_member(definition, "file");
     mu_scene *scene = reader->scene;
-    mu_error reason = {""};
+    mu_error reason = {.text = ""};
     mu_mesh mesh;
-    uint32_t dropped = 0;
+    mu_mesh_notes notes;
     char *path = mu_scene_path(reader, json_string_value(place.value));
     if (!path) return mu_fail(reader->error, "not enough memory for the scene");
-    const _Bool ok = mu_mesh_read(&mesh, path, &dropped, &reason);
+    const _Bool ok = mu_mesh_read(&mesh, path, &notes, &reason);
     free(path);
     if (!ok) return mu_place_fail(&place, reader->error, "%s", reason.text);
-    if (dropped) {
+    if (notes.dropped) {
         char text[96];
-        snprintf(text, sizeof text, "%u triangles without area were left out", (unsigned)dropped);
-        mu_scene_warn(&place, text);
+        snprintf(text, sizeof text, "%u triangles without area were left out", (unsigned)notes.dropped);
+        mu_scene_warn(reader, &place, text);
     }
+    if (notes.uvs_lost)
+        mu_scene_warn(reader, &place, "only some of its parts have texture coordinates; they are left out");
     mesh.name = strdup(name);
     if (!mesh.name ||
         !mu_append((void **)&scene->meshes, &scene->mesh_count, sizeof *scene->meshes, reader->error)) {

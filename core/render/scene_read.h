@@ -79,8 +79,8 @@ char *mu_scene_path(const mu_reader *reader, const char *name);
 _Bool mu_fail_unknown(const mu_place *place, json_t *table, const char *what, mu_error *error);
 /* "scene.json:12:20: $.lights[0].image"; to be freed. NULL without memory. */
 char *mu_place_text(const mu_place *place);
-/* One line on stderr, with the place. */
-void mu_scene_warn(const mu_place *place, const char *text);
+/* A warning with the place. */
+void mu_scene_warn(const mu_reader *reader, const mu_place *place, const char *text);
 /* Appends room for one element, zeroed; false without memory. */
 _Bool mu_append(void **array, uint32_t *count, size_t size, mu_error *error);
 

@@ -90,17 +90,17 @@ _Bool mu_fail_unknown(const mu_place *place, json_t *table, const char *what, mu
 }
 
 char *mu_place_text(const mu_place *place) {
-    mu_error line = {""};
+    mu_error line = {.text = ""};
     mu_place_fail(place, &line, "%s", "");
     char *end = line.text + strlen(line.text);
     while (end > line.text && (end[-1] == ' ' || end[-1] == ':')) --end;
     return strndup(line.text, (size_t)(end - line.text));
 }
 
-void mu_scene_warn(const mu_place *place, const char *text) {
-    mu_error line = {""};
+void mu_scene_warn(const mu_reader *reader, const mu_place *place, const char *text) {
+    mu_error line = {.text = ""};
     mu_place_fail(place, &line, "%s", text);
-    fprintf(stderr, "musurf: warning: %s\n", line.text);
+    mu_warn(reader->error, "%s", line.text);
 }
 
 _Bool mu_append(void **array, uint32_t *count, size_t size, mu_error *error) {

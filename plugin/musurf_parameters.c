@@ -66,7 +66,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      NUMBERS},
     {HEAD(5, "transform", "Transform"),
      "Linear map M of tangent-plane positions that deforms the microsurface: rows [a c], [b d]; any "
-     "invertible map.",
+     "invertible map, of condition up to 1e30.",
      "",
      MUSURF_MATRIX,
      MUSURF_MAY_VARY,

@@ -101,9 +101,9 @@ enum {
 };
 
 enum {
-    MUSURF_MAY_VARY = 1u << 0,       /* accepts MUSURF_SLOT: a value per hit */
-    MUSURF_MIN_EXCLUDED = 1u << 1,   /* the range is open at min */
-    MUSURF_MAX_EXCLUDED = 1u << 2    /* the range is open at max */
+    MUSURF_MAY_VARY = 1u << 0,     /* accepts MUSURF_SLOT: a value per hit */
+    MUSURF_MIN_EXCLUDED = 1u << 1, /* the range is open at min */
+    MUSURF_MAX_EXCLUDED = 1u << 2  /* the range is open at max */
 };
 
 /*
@@ -174,13 +174,13 @@ typedef struct musurf_value {
 /* What sample answers. A rejected sample has lobe 0, weight 0, pdf 0; it counts as a sample. Frozen. */
 typedef struct musurf_sample {
     float wi[3];
-    float wm[3];       /* the micronormal that made it; the half-vector, unrounded */
-    float weight[3];   /* f |wi.z| / pdf, analytic: never recomputed as a quotient */
-    float pdf;         /* of a delta lobe: its discrete probability, and f is weight times it */
+    float wm[3];     /* the micronormal that made it; the half-vector, unrounded */
+    float weight[3]; /* f |wi.z| / pdf, analytic: never recomputed as a quotient */
+    float pdf;       /* of a delta lobe: its discrete probability, and f is weight times it */
     float pdf_reverse;
-    float eta;         /* n_transmitted / n_incident along this path; 1 for reflection */
-    float roughness;   /* slope roughness alpha of the sampled lobe: 0 for a delta lobe, 1 for diffuse */
-    uint32_t lobe;     /* exactly one bit, or 0 when rejected */
+    float eta;       /* n_transmitted / n_incident along this path; 1 for reflection */
+    float roughness; /* slope roughness alpha of the sampled lobe: 0 for a delta lobe, 1 for diffuse */
+    uint32_t lobe;   /* exactly one bit, or 0 when rejected */
 } musurf_sample;
 
 /* ----------------------------------------------------------------------------------------------- types */
@@ -199,11 +199,11 @@ typedef struct musurf_plan {
     uint32_t closure_alignment; /* at most 64 */
     uint32_t lobes;             /* all that may ever be returned */
     uint32_t needs;
-    uint32_t slot_floats;       /* how many floats of `slots` setup may read */
-    uint32_t table_bytes;       /* tables built for this material */
+    uint32_t slot_floats; /* how many floats of `slots` setup may read */
+    uint32_t table_bytes; /* tables built for this material */
     uint32_t material_bytes;
-    const char *name;           /* the chosen plan, for people and tests: "gtr general-transform table" */
-    const char *left_out;       /* what this material did not need, comma-separated; lives with the material */
+    const char *name;     /* the chosen plan, for people and tests: "gtr general-transform table" */
+    const char *left_out; /* what this material did not need, comma-separated; lives with the material */
 } musurf_plan;
 
 typedef struct musurf_material_type {

@@ -41,7 +41,7 @@ typedef struct musurf_probe_values {
     double f[3]; /* 1/sr, F included, no cosine */
     double F[3];
     double G2;
-    double pdf; /* of sampling wi given wo, by the material's sampler */
+    double pdf;     /* of sampling wi given wo, by the material's sampler */
     uint32_t delta; /* 1: a mirror; f and pdf are 0, D and Dv are 0 */
 } musurf_probe_values;
 
@@ -50,7 +50,7 @@ typedef struct musurf_probe_sample {
     double f[3];      /* 1/sr, no cosine */
     double weight[3]; /* f cos / pdf, analytic */
     double pdf;
-    uint32_t rejected; /* 1: wi fell below the horizon; f, weight and pdf are 0; wm is still the sampled normal */
+    uint32_t rejected; /* 1: wi fell below the horizon; f, weight and pdf are 0; wm is the sampled normal */
     uint32_t delta;
 } musurf_probe_sample;
 
@@ -59,8 +59,9 @@ typedef struct musurf_probe {
     /* wm and wi may each be NULL. Directions are normalised by the callee in the asked precision. */
     musurf_result (*evaluate)(const musurf_material *material, musurf_precision precision, const double wo[3],
                               const double *wm, const double *wi, musurf_probe_values *out);
-    musurf_result (*sample)(const musurf_material *material, musurf_precision precision, musurf_sampler sampler,
-                            const double wo[3], const double u[3], musurf_probe_sample *out);
+    musurf_result (*sample)(const musurf_material *material, musurf_precision precision,
+                            musurf_sampler sampler, const double wo[3], const double u[3],
+                            musurf_probe_sample *out);
 } musurf_probe;
 
 #ifdef __cplusplus

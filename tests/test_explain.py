@@ -157,6 +157,12 @@ class Explain(unittest.TestCase):
         self.assertGreater(table["material_bytes"], plain["material_bytes"])
         self.assertEqual(one(transform=[[3, 0], [0, 3]])["needs_tangent"], False)  # a scale is no direction
 
+    def test_readme_and_info_list_the_same(self):
+        listed = json.loads(musurf("info", "--json").out)["features"]
+        self.assertEqual(list(listed), LISTED)
+        block = (ROOT / "README.md").read_text().split("<!-- features: begin -->\n")[1].split("<!-- features: end -->")[0]
+        self.assertEqual(re.findall(r"^\| (\w+) \| (.*) \|$", block, re.M)[1:], list(listed.items()))
+
     def test_unused_definitions_cost_nothing(self):
         unused = dict(METAL, ndf="gtr", gamma=1.3)
         told = self.explain({"materials": {"unused": unused}})

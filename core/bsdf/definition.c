@@ -51,8 +51,9 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         const double *m = d->transform;
         why->field = "transform";
         snprintf(why->text, sizeof why->text,
-                 "[[%.9g, %.9g], [%.9g, %.9g]] is singular or not finite: M must be invertible", m[0], m[1],
-                 m[2], m[3]);
+                 "[[%.9g, %.9g], [%.9g, %.9g]] is singular or not finite: M must be invertible, its "
+                 "condition at most 1e30",
+                 m[0], m[1], m[2], m[3]);
         return 0;
     }
     return check_fresnel(d, why);

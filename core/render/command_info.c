@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/render/command.h"
+#include "core/render/features.h"
 #include "core/render/info.h"
 #include "core/render/options.h"
 
@@ -104,17 +105,28 @@ static void print_text(const json_t *all) {
     printf("\n\n%s: %s. %s\n\nparameters:\n", text_of(material, "id"), text_of(material, "label"),
            text_of(material, "doc"));
     json_array_foreach(json_object_get(material, "parameters"), i, value) print_param(value);
+    const char *name;
+    printf("\nwhat a scene may need, or leave out (render --explain):\n");
+    json_object_foreach(json_object_get(all, "features"), name, value)
+        printf("  %-24s%s\n", name, json_string_value(value));
+}
+
+static json_t *features(void) {
+    json_t *all = json_object();
+    for (int i = 0; i < MU_FEATURE_COUNT; i++)
+        json_object_set_new(all, mu_feature_list()[i].name, json_string(mu_feature_list()[i].brings));
+    return all;
 }
 
 static json_t *collect(const musurf_plugin *plugin, const char *file, const musurf_material_type *type) {
     json_t *materials = json_array();
     for (size_t i = 0; i < plugin->type_count; i++)
         json_array_append_new(materials, json_string(plugin->types[i]->id));
-    return json_pack("{s:o, s:{s:s, s:s, s:s, s:i, s:s, s:o}, s:{s:s, s:s, s:s, s:o}}", "build",
+    return json_pack("{s:o, s:{s:s, s:s, s:s, s:i, s:s, s:o}, s:{s:s, s:s, s:s, s:o}, s:o}", "build",
                      mu_info_build(), "plugin", "name", plugin->name, "version", plugin->version, "license",
                      plugin->license, "abi_minor", (int)plugin->abi_minor, "file", file, "materials",
                      materials, "material", "id", type->id, "label", type->label, "doc", type->doc,
-                     "parameters", mu_info_params(type));
+                     "parameters", mu_info_params(type), "features", features());
 }
 
 static int show(mu_plugins *plugins, const char *id, _Bool as_json, _Bool as_schema) {

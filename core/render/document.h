@@ -57,7 +57,8 @@ _Bool mu_place_fail_key(const mu_place *place, mu_error *error, const char *form
 
 /* Each reads what stands at `place`, checks kind and finiteness, and fails with what would be right. */
 _Bool mu_place_number(const mu_place *place, double min, double max, double *out, mu_error *error);
-_Bool mu_place_numbers(const mu_place *place, size_t count, double min, double max, double *out, mu_error *error);
+_Bool mu_place_numbers(const mu_place *place, size_t count, double min, double max, double *out,
+                       mu_error *error);
 _Bool mu_place_integer(const mu_place *place, long long min, long long max, long long *out, mu_error *error);
 _Bool mu_place_flag(const mu_place *place, _Bool *out, mu_error *error);
 _Bool mu_place_string(const mu_place *place, const char **out, mu_error *error); /* borrowed */

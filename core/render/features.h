@@ -40,7 +40,7 @@ enum {
 #define X(bit, name, brings) MU_FEATURE_INDEX_##bit,
     MU_FEATURES(X)
 #undef X
-    MU_FEATURE_COUNT
+        MU_FEATURE_COUNT
 };
 
 #define X(bit, name, brings) MU_FEATURE_##bit = 1u << MU_FEATURE_INDEX_##bit,

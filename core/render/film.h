@@ -23,10 +23,10 @@ struct mu_radiance;
 enum { MU_BLOCK = 16, MU_BLOCKS = 8 };
 
 typedef struct mu_pixel {
-    double rgb[3];      /* sums over samples */
-    double luminance2;  /* sum of squares of luminance (Rec. 709), for the variance */
-    double block;       /* luminance of the block that is not full yet */
-    double block2;      /* sum of squares of the full blocks' luminance */
+    double rgb[3];              /* sums over samples */
+    double luminance2;          /* sum of squares of luminance (Rec. 709), for the variance */
+    double block;               /* luminance of the block that is not full yet */
+    double block2;              /* sum of squares of the full blocks' luminance */
     float albedo[3], normal[3]; /* means over samples: a float sum would stall after millions of them */
     uint32_t hits;              /* samples whose camera ray hit something */
     uint32_t samples;

@@ -15,18 +15,19 @@ typedef struct mu_ray {
 
 typedef struct mu_hit {
     mu_vec3 p;
-    mu_vec3 ng;         /* geometric normal, unit, on the side the object's frame calls outside, even if the ray
-                         * came from inside: turning over what is two-sided is left to the shading */
-    mu_frame frame;     /* shading frame: n interpolated, t the continuous tangent made orthogonal to n */
+    mu_vec3 ng;     /* geometric normal, unit, on the side the object's frame calls outside, even if the ray
+                     * came from inside: turning over what is two-sided is left to the shading */
+    mu_frame frame; /* shading frame: n interpolated, t the continuous tangent made orthogonal to n */
     float uv[2];
-    mu_vec3 dpdu, dpdv; /* world-space derivatives of position by texture coordinates; zero if there are no UVs */
+    mu_vec3 dpdu, dpdv; /* world-space derivatives by texture coordinates; zero if there are no UVs */
     float distance;
-    float error;        /* how far p may lie from the surface that rays are tested against, along ng: a bound */
+    float error; /* how far p may lie from the surface that rays are tested against, along ng: a bound */
     uint32_t object;
-    uint32_t material;  /* index; the grid's where a grid line is hit; MU_NO_INDEX on a light: it only emits */
+    uint32_t material; /* index; the grid's where a grid line is hit; MU_NO_INDEX on a light: it only emits */
 } mu_hit;
 
-mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error *error); /* NULL on failure */
+/* NULL on failure. */
+mu_geometry *mu_geometry_build(const mu_scene *scene, uint32_t threads, mu_error *error);
 void mu_geometry_free(mu_geometry *geometry);
 _Bool mu_geometry_intersect(const mu_geometry *geometry, const mu_ray *ray, mu_hit *hit);
 _Bool mu_geometry_occluded(const mu_geometry *geometry, const mu_ray *ray);
@@ -35,9 +36,10 @@ _Bool mu_geometry_occluded(const mu_geometry *geometry, const mu_ray *ray);
  * `active` is set; bit i of the answer tells that it met something, and then hits[i] is filled. The last bits of a
  * hit may depend on which rays share the packet: who wants the same picture again forms the same packets again. */
 enum { MU_PACKET = 8 };
-uint32_t mu_geometry_intersect_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET], uint32_t active,
-                                      mu_hit hits[MU_PACKET]);
-uint32_t mu_geometry_occluded_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET], uint32_t active);
+uint32_t mu_geometry_intersect_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET],
+                                      uint32_t active, mu_hit hits[MU_PACKET]);
+uint32_t mu_geometry_occluded_packet(const mu_geometry *geometry, const mu_ray rays[MU_PACKET],
+                                     uint32_t active);
 
 /* The ray that leaves `hit` toward `direction` without meeting the surface it left: offset along ng by a bound on
  * the rounding error of p. */

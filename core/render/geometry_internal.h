@@ -26,7 +26,7 @@ struct mu_geometry {
     uint32_t *rectangles; /* primitive id -> object */
     uint32_t *spheres;    /* primitive id -> object */
     uint32_t part_count, rectangle_count, sphere_count;
-    _Bool packets;        /* the processor traces eight rays at once */
+    _Bool packets; /* the processor traces eight rays at once */
 };
 
 /* What Embree says of a hit. */

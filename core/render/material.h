@@ -25,7 +25,7 @@ const char *mu_plugins_opened(const mu_plugins *plugins, size_t index);
 
 /* A named map T(u,v) of the texture square; its Jacobian at the hit becomes M ("jacobian" in a material). */
 typedef struct mu_jacobian {
-    enum { MU_JACOBIAN_NONE, MU_JACOBIAN_POWER_SHEAR } map; /* power_shear: T(u,v) = (u, v + amount u^exponent) */
+    enum { MU_JACOBIAN_NONE, MU_JACOBIAN_POWER_SHEAR } map; /* T(u,v) = (u, v + amount u^exponent) */
     double amount, exponent;
 } mu_jacobian;
 
@@ -33,8 +33,8 @@ typedef struct mu_material {
     const musurf_material_type *type;
     musurf_material *compiled;
     musurf_plan plan;
-    mu_jacobian jacobian;   /* if any, "transform" is pushed through slots[0..3] at each hit */
-    float transform[4];     /* the constant "transform" which the Jacobian is multiplied onto: M = J transform */
+    mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
+    float transform[4];   /* the constant "transform", onto which the Jacobian goes: M = J transform */
 } mu_material;
 
 /* The material described by the object at `place`. The plugin's own message about a parameter is put into the

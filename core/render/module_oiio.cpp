@@ -48,7 +48,9 @@ class Silence {
 };
 
 /* IEC 61966-2-1 */
-float linear_from_srgb(float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); }
+float linear_from_srgb(float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
 
 float *read(const char *file, int *width, int *height, char *message, size_t size) {
     struct stat status;
@@ -73,10 +75,11 @@ float *read(const char *file, int *width, int *height, char *message, size_t siz
     if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels)) {
         std::free(pixels);
         const std::string why = input->geterror();
-        return refuse(message, size, why.empty() ? "is truncated or damaged" : "is truncated or damaged: " + why);
+        return refuse(message, size,
+                      why.empty() ? "is truncated or damaged" : "is truncated or damaged: " + why);
     }
-    const bool srgb = spec.format.is_floating_point() ? false
-                                                      : spec.get_string_attribute("oiio:ColorSpace") != "Linear";
+    const bool srgb =
+        spec.format.is_floating_point() ? false : spec.get_string_attribute("oiio:ColorSpace") != "Linear";
     for (long long i = srgb ? 0 : count * channels; i < count * channels; i++)
         pixels[i] = linear_from_srgb(pixels[i]);
     for (long long i = channels == 1 ? count : 0; i-- > 0;)
@@ -89,8 +92,8 @@ float *read(const char *file, int *width, int *height, char *message, size_t siz
 } // namespace
 
 /* Linear RGB in malloc'ed memory, or NULL and one line in `message`. Not for two threads at once: it turns stderr off. */
-extern "C" __attribute__((visibility("default"))) float *mu_oiio_read(const char *file, int *width, int *height,
-                                                                      char *message, size_t size) {
+extern "C" __attribute__((visibility("default"))) float *
+mu_oiio_read(const char *file, int *width, int *height, char *message, size_t size) {
     try {
         const Silence silence;
         return read(file, width, height, message, size);

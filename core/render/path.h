@@ -26,7 +26,7 @@ mu_ray mu_camera_ray(const mu_camera *camera, const mu_film_settings *film, uint
 void mu_path_pixel(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
                    uint32_t y, uint32_t sample, void *scratch, mu_radiance *out);
 /* mu_integrator_row with options. */
-void mu_path_row(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x, uint32_t y,
-                 uint32_t count, uint32_t sample, void *scratch, mu_radiance *out);
+void mu_path_row(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
+                 uint32_t y, uint32_t count, uint32_t sample, void *scratch, mu_radiance *out);
 
 #endif

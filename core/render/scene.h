@@ -20,7 +20,7 @@ typedef struct mu_camera {
     enum { MU_PERSPECTIVE, MU_ORTHOGRAPHIC } kind;
     mu_vec3 position;
     mu_vec3 right, up, forward; /* orthonormal; image x to the right, image y downwards is -up */
-    float half_height;          /* perspective: tan(vertical field of view / 2); orthographic: half the height in world units */
+    float half_height; /* perspective: tan(vertical field of view / 2); orthographic: half the height */
 } mu_camera;
 
 /* Both from a scene file and from --size. */
@@ -67,25 +67,25 @@ typedef struct mu_grid {
 
 typedef struct mu_object {
     enum { MU_RECTANGLE, MU_SPHERE, MU_MESH } shape;
-    uint32_t mesh;      /* MU_MESH: index */
-    float size[2];      /* MU_RECTANGLE: in its xy plane, centred, normal +z, uv in [0,1]^2 along +x, +y */
-    float radius;       /* MU_SPHERE: centred; u along longitude, v from the south to the north pole */
+    uint32_t mesh; /* MU_MESH: index */
+    float size[2]; /* MU_RECTANGLE: in its xy plane, centred, normal +z, uv in [0,1]^2 along +x, +y */
+    float radius;  /* MU_SPHERE: centred; u along longitude, v from the south to the north pole */
     mu_affine to_world;
-    uint32_t material;  /* index; MU_NO_INDEX for the rectangle of a light, which reflects nothing */
-    uint32_t light;     /* rectangle that emits: index of its light, else MU_NO_INDEX */
-    _Bool two_sided;    /* turn the frame over when seen from behind; otherwise the back of opaque things is black */
+    uint32_t material; /* index; MU_NO_INDEX for the rectangle of a light, which reflects nothing */
+    uint32_t light;    /* rectangle that emits: index of its light, else MU_NO_INDEX */
+    _Bool two_sided; /* turn the frame over when seen from behind; else the back of opaque things is black */
     mu_grid grid;
 } mu_object;
 
 typedef struct mu_light {
     enum { MU_ENVIRONMENT, MU_CONSTANT, MU_STUDIO, MU_DIRECTIONAL, MU_RECTANGLE_LIGHT } kind;
-    char *image;        /* MU_ENVIRONMENT: resolved path of a latitude-longitude image; +z is up */
-    char *place;        /* MU_ENVIRONMENT: "scene.json:12:20: $.lights[0].image", for messages about the image */
-    float rotation;     /* MU_ENVIRONMENT, MU_STUDIO: radians about +z, counter-clockwise */
-    float scale[3];     /* multiplies radiance; of MU_CONSTANT it is the radiance; MU_RECTANGLE_LIGHT: radiance */
-    mu_vec3 direction;  /* MU_DIRECTIONAL: toward the light, unit */
-    float irradiance[3];/* MU_DIRECTIONAL: on a surface that faces it */
-    mu_affine to_world; /* MU_RECTANGLE_LIGHT: emits along its +z */
+    char *image;    /* MU_ENVIRONMENT: resolved path of a latitude-longitude image; +z is up */
+    char *place;    /* MU_ENVIRONMENT: "scene.json:12:20: $.lights[0].image", for messages about the image */
+    float rotation; /* MU_ENVIRONMENT, MU_STUDIO: radians about +z, counter-clockwise */
+    float scale[3]; /* multiplies radiance; of MU_CONSTANT it is the radiance; MU_RECTANGLE_LIGHT: radiance */
+    mu_vec3 direction;   /* MU_DIRECTIONAL: toward the light, unit */
+    float irradiance[3]; /* MU_DIRECTIONAL: on a surface that faces it */
+    mu_affine to_world;  /* MU_RECTANGLE_LIGHT: emits along its +z */
     float size[2];
 } mu_light;
 

@@ -20,16 +20,30 @@ typedef struct mu_frame {
     mu_vec3 t, b, n;
 } mu_frame;
 
-static inline mu_vec3 mu_v3(float x, float y, float z) { return (mu_vec3){x, y, z}; }
-static inline mu_vec3 mu_add(mu_vec3 a, mu_vec3 b) { return (mu_vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static inline mu_vec3 mu_sub(mu_vec3 a, mu_vec3 b) { return (mu_vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static inline mu_vec3 mu_mul(mu_vec3 a, mu_vec3 b) { return (mu_vec3){a.x * b.x, a.y * b.y, a.z * b.z}; }
-static inline mu_vec3 mu_scale(mu_vec3 a, float s) { return (mu_vec3){a.x * s, a.y * s, a.z * s}; }
-static inline float mu_dot(mu_vec3 a, mu_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline mu_vec3 mu_v3(float x, float y, float z) {
+    return (mu_vec3){x, y, z};
+}
+static inline mu_vec3 mu_add(mu_vec3 a, mu_vec3 b) {
+    return (mu_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+static inline mu_vec3 mu_sub(mu_vec3 a, mu_vec3 b) {
+    return (mu_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+static inline mu_vec3 mu_mul(mu_vec3 a, mu_vec3 b) {
+    return (mu_vec3){a.x * b.x, a.y * b.y, a.z * b.z};
+}
+static inline mu_vec3 mu_scale(mu_vec3 a, float s) {
+    return (mu_vec3){a.x * s, a.y * s, a.z * s};
+}
+static inline float mu_dot(mu_vec3 a, mu_vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 static inline mu_vec3 mu_cross(mu_vec3 a, mu_vec3 b) {
     return (mu_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-static inline float mu_length(mu_vec3 a) { return sqrtf(mu_dot(a, a)); }
+static inline float mu_length(mu_vec3 a) {
+    return sqrtf(mu_dot(a, a));
+}
 /* The zero vector stays zero. */
 static inline mu_vec3 mu_normalise(mu_vec3 a) {
     const float length = mu_length(a);

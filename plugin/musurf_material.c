@@ -26,17 +26,13 @@ static int float_suffices(const parsed *p) {
 static const char *transform_class(const parsed *p) {
     const double *m = p->definition.transform;
     if (p->varying) return "varying";
-    if (m[1] != 0 || m[2] != 0) return "general";
-    return m[0] == 1 && m[3] == 1 ? "identity" : "diagonal";
+    if (mu_transform_is_similarity(m)) return fabs(m[0]) == 1 && m[1] == 0 ? "identity" : "uniform";
+    return m[1] != 0 || m[2] != 0 ? "general" : "diagonal";
 }
 
-/* Does shading depend on the tangent? Not if M turns and scales alike in all directions. */
+/* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
-    const double *m = p->definition.transform;
-    const double length = m[0] * m[0] + m[1] * m[1], other = m[2] * m[2] + m[3] * m[3];
-    const double dot = m[0] * m[2] + m[1] * m[3];
-    return p->varying || fabs(length - other) > 1e-12 * (length + other) ||
-           fabs(dot) > 1e-12 * (length + other);
+    return p->varying || !mu_transform_is_similarity(p->definition.transform);
 }
 
 static void append(char *text, size_t size, const char *more) {
@@ -54,6 +50,7 @@ static void name_plan(musurf_material *m, const char *surface) {
     if (!p->varying) append(m->left_out, sizeof m->left_out, "slots");
     if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
     if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
+    if (!mirror && !anisotropic(p)) append(m->left_out, sizeof m->left_out, "matrices");
     if (!m->needs) append(m->left_out, sizeof m->left_out, "tangents");
 }
 

@@ -96,6 +96,43 @@ static void scale_trades_with_roughness(void **state) {
     }
 }
 
+/* The plan without matrices, taken where M only turns, mirrors and scales, against the general one, taken where M is
+ * pushed per hit: the same values, and in the samplers' own frame the same draws. */
+static void uniform_plan_equals_general(void **state) {
+    (void)state;
+    uniform u = {7};
+    for (int i = 0; i < CASES; i++) {
+        const int k = i % BASES;
+        const double scale = pow(10, 4 * uniform_double(&u) - 2), phi = 7 * uniform_double(&u);
+        const double c = i % 3 ? scale : scale * cos(phi), s = i % 3 ? 0 : scale * sin(phi),
+                     sign = i % 2 ? -1 : 1;
+        const mu_definition d =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, c, -s * sign, s, c * sign);
+        const mu_definition same =
+            bsdf_definition(bases[k].ndf, bases[k].alpha, bases[k].gamma, scale, 0, 0, scale);
+        double wo[3], wi[3];
+        bsdf a, b;
+        mu_closure_d general;
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wo);
+        bsdf_direction(0.02 + 0.98 * uniform_double(&u), 7 * uniform_double(&u), wi);
+        bsdf_bind_double(&a, &d, wo), bsdf_bind_double(&b, &same, wo);
+        assert_true(mu_bind_d(a.d.surface, wo, d.transform, &general));
+        assert_ptr_not_equal(a.d.kernel, general.kernel);
+        mu_value_d x, y;
+        mu_eval_d(&a.d, wi, &x), mu_eval_d(&general, wi, &y);
+        bsdf_near(x.f[0], y.f[0], tolerance);
+        bsdf_near(x.pdf, y.pdf, tolerance);
+        bsdf_near(x.pdf_reverse, y.pdf_reverse, tolerance);
+        assert_true(mu_bind_d(b.d.surface, wo, same.transform, &general));
+        const double three[3] = {uniform_double(&u), uniform_double(&u), uniform_double(&u)};
+        mu_sample_d p, q;
+        mu_sample_wi_d(&a.d, three, &p), mu_sample_wi_d(&general, three, &q);
+        assert_int_equal(p.rejected, q.rejected);
+        for (int j = 0; j < 3; j++) assert_true(fabs(p.wi[j] - q.wi[j]) < tolerance);
+        if (!p.rejected) bsdf_near(p.pdf, q.pdf, tolerance / wo[2]);
+    }
+}
+
 /* Reciprocity: f(wo, wi) = f(wi, wo), and the two pdfs change places. */
 static void is_reciprocal(void **state) {
     (void)state;
@@ -163,6 +200,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(equals_classic_anisotropy),
                                        cmocka_unit_test(isometry_moves_with_the_surface),
                                        cmocka_unit_test(scale_trades_with_roughness),
+                                       cmocka_unit_test(uniform_plan_equals_general),
                                        cmocka_unit_test(is_reciprocal),
                                        cmocka_unit_test(is_normalised),
                                        cmocka_unit_test(refuses_singular_maps)};

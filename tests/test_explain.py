@@ -155,7 +155,11 @@ class Explain(unittest.TestCase):
         self.assertEqual(plain["table_bytes"], 0)
         self.assertGreater(table["table_bytes"], 0)
         self.assertGreater(table["material_bytes"], plain["material_bytes"])
-        self.assertEqual(one(transform=[[3, 0], [0, 3]])["needs_tangent"], False)  # a scale is no direction
+        for transform in ([[3, 0], [0, 3]], [[0, -1], [1, 0]], [[-1, 0], [0, 1]]):  # a scale, turn or mirror is no direction
+            alike = one(transform=transform)
+            self.assertFalse(alike["needs_tangent"])
+            self.assertIn("matrices", alike["left_out"])
+        self.assertNotIn("matrices", turned["left_out"])
 
     def test_readme_and_info_list_the_same(self):
         listed = json.loads(musurf("info", "--json").out)["features"]

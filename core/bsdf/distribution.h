@@ -40,6 +40,7 @@ typedef struct MU(mu_base) {
 /* A distribution with the generic transform compiled around it. */
 struct MU(mu_kernel) {
     const char *name;
+    const kernel *uniform; /* the same where M is a multiple of 1: it multiplies no matrix */
     size_t (*table_bytes)(double alpha, double gamma);
     double (*prepare)(base *b, double alpha, double gamma, void *table);
     real (*lambda)(const closure *c, const real w[3]); /* view_z cos Lambda_M */
@@ -58,7 +59,8 @@ typedef struct MU(mu_fresnel) {
 void MU(fresnel_eval)(const fresnel *f, real cosine, real out[3]);
 
 struct MU(mu_surface) {
-    const kernel *kernel; /* NULL: a mirror */
+    const kernel *kernel; /* of the definition's M, and of any M; NULL: a mirror */
+    const kernel *general;
     base base;
     fresnel fresnel;
     mu_sampler sampler;

@@ -70,6 +70,10 @@ double mu_transform_determinant(const double transform[4]) {
     const double det = reduce(transform, reduced, &exponent);
     return ldexp(fabs(det), 2 * exponent);
 }
+
+int mu_transform_is_similarity(const double m[4]) {
+    return (m[0] == m[3] && m[1] == -m[2]) || (m[0] == -m[3] && m[1] == m[2]);
+}
 #endif
 
 int MU(map_make)(map *out, const double m[4], double unit) {

@@ -24,24 +24,32 @@ int MU(map_make)(map *out, const double m[4], double unit);
  * did. */
 int MU(map_widen)(map *m, double alpha);
 
+/* What a kernel was compiled for. */
+typedef enum map_kind { MAP_GENERAL, MAP_UNIFORM } map_kind; /* MAP_UNIFORM: M is a multiple of 1 */
+
+/* v = (rows [a b], [c d]) u. */
+static inline void matrix_times(map_kind kind, real a, real b, real c, real d, const real u[2], real v[2]) {
+    v[0] = kind == MAP_UNIFORM ? a * u[0] : a * u[0] + b * u[1];
+    v[1] = kind == MAP_UNIFORM ? a * u[1] : c * u[0] + d * u[1];
+}
+
 /* u = M^T m, Eq. (13) and (14), in slope units: |u_xy|^2 and u_z^2. */
-static inline void map_normal(const map *m, const real n[3], real *r2, real *z2) {
-    const real x = m->normal[0] * n[0] + m->normal[1] * n[1], y = m->normal[2] * n[0] + m->normal[3] * n[1];
-    *r2 = smaller(x * x + y * y, REAL_MAX / 16); /* saturates rather than overflow */
+static inline void map_normal(map_kind kind, const map *m, const real n[3], real *r2, real *z2) {
+    real u[2];
+    matrix_times(kind, m->normal[0], m->normal[1], m->normal[2], m->normal[3], n, u);
+    *r2 = smaller(u[0] * u[0] + u[1] * u[1], REAL_MAX / 16); /* saturates rather than overflow */
     *z2 = square(m->normal_z * n[2]);
 }
 
 /* w = M^-1 v, Eq. (12), times view_z. */
-static inline void map_view(const map *m, const real v[3], real w[3]) {
-    w[0] = m->view[0] * v[0] + m->view[1] * v[1];
-    w[1] = m->view[2] * v[0] + m->view[3] * v[1];
+static inline void map_view(map_kind kind, const map *m, const real v[3], real w[3]) {
+    matrix_times(kind, m->view[0], m->view[1], m->view[2], m->view[3], v, w);
     w[2] = m->view_z * v[2];
 }
 
 /* m = M^-T u, Eq. (26), not normalised. */
-static inline void map_normal_back(const map *m, const real u[3], real n[3]) {
-    n[0] = m->view[0] * u[0] + m->view[2] * u[1];
-    n[1] = m->view[1] * u[0] + m->view[3] * u[1];
+static inline void map_normal_back(map_kind kind, const map *m, const real u[3], real n[3]) {
+    matrix_times(kind, m->view[0], m->view[2], m->view[1], m->view[3], u, n);
     n[2] = m->view_z * u[2];
 }
 

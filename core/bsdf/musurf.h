@@ -71,6 +71,8 @@ int mu_definition_check(const mu_definition *definition, mu_complaint *why);
 /* |det M| by a fused product difference; 0 also for a map so near to singular (|det| < 1e-30 max²) that no
  * direction survives it, and for one that is not finite. */
 double mu_transform_determinant(const double transform[4]);
+/* 1 if M turns, mirrors and scales alike in all directions: to an isotropic microsurface, a scale. */
+int mu_transform_is_similarity(const double transform[4]);
 
 /* n and k of a metal at three wavelengths, by chemical symbol; 0 if it is not known. The names,
  * NULL-terminated. */

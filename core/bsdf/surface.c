@@ -46,7 +46,7 @@ size_t MU(mu_surface_bytes)(const mu_definition *definition) {
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     surface *s = memory;
     const plan p = choose(d);
-    *s = (surface){.kernel = p.kernel, .sampler = d->sampler, .alpha = R(p.alpha), .unit = 1, .name = p.name};
+    *s = (surface){.kernel = p.kernel, .general = p.kernel, .sampler = d->sampler, .alpha = R(p.alpha), .unit = 1, .name = p.name};
     s->fresnel.kind = d->fresnel;
     for (int i = 0; i < 3; i++) {
         const mu_fresnel_kind kind = d->fresnel;
@@ -59,7 +59,11 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
         s->table_bytes = p.kernel->table_bytes(p.alpha, p.gamma);
         s->unit = p.kernel->prepare(&s->base, p.alpha, p.gamma, (char *)memory + header_bytes());
     }
-    MU(map_make)(&s->map, d->transform, s->unit);
+    /* The distributions are isotropic: what turns or mirrors alone leaves them as they are. */
+    const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
+    const int is_uniform = p.kernel && mu_transform_is_similarity(d->transform);
+    if (is_uniform) s->kernel = p.kernel->uniform;
+    MU(map_make)(&s->map, is_uniform ? uniform : d->transform, s->unit);
     return s;
 }
 
@@ -79,6 +83,7 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
         const double m[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
                              (double)transform[3]};
         if (!MU(map_make)(&c->map, m, s->unit)) return 0;
+        c->kernel = s->general;
     }
     for (int i = 0; i < 3; i++) c->wo[i] = wo[i];
     c->sigma = !(wo[2] >= 0) ? 0 : c->kernel ? c->kernel->sigma(c, wo) : wo[2];

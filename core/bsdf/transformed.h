@@ -21,32 +21,21 @@ static inline real orientation(const map *m) {
 }
 
 /* view_z lambda_M(v), Eq. (12): sigma_M(v) = |M^-1 v| sigma(M^-1 v / |M^-1 v|). */
-static inline real view_lambda(const closure *c, const real v[3]) {
+static inline real view_lambda(map_kind kind, const closure *c, const real v[3]) {
     real w[3];
-    map_view(&c->map, v, w);
+    map_view(kind, &c->map, v, w);
     const real r2 =
         smaller(w[0] * w[0] + w[1] * w[1], REAL_MAX / 16); /* M beyond linear_map.c's bounds saturates */
     return z_lambda(&c->surface->base, r2, w[2] * w[2], w[2]);
 }
 
-static real lambda_of(const closure *c, const real v[3]) {
-    return view_lambda(c, v);
-}
-static real sigma_of(const closure *c, const real v[3]) {
-    return c->map.view_z * v[2] + view_lambda(c, v);
-}
-
 /* n2² D_M of a normal of squared length n2. */
-static inline real transformed_density(const closure *c, const real n[3], real n2) {
+static inline real transformed_density(map_kind kind, const closure *c, const real n[3], real n2) {
     real r2, z2;
-    map_normal(&c->map, n, &r2, &z2);
+    map_normal(kind, &c->map, n, &r2, &z2);
     const real d = density(&c->surface->base, r2, z2, n2); /* Eq. (22) */
     const real wrong = MUTANT(3, square((r2 + z2) / (n2 * square(c->map.normal_z))), R(1));
     return smaller(d * wrong, saturated) * MUTANT(6, orientation(&c->map), R(1));
-}
-
-static real density_of(const closure *c, const real wm[3]) {
-    return wm[2] > 0 ? transformed_density(c, wm, wm[0] * wm[0] + wm[1] * wm[1] + wm[2] * wm[2]) : 0;
 }
 
 /* cos_i / (cos_i sigma_o + cos_o lambda_i), or with 1 for cos_i. */
@@ -55,7 +44,7 @@ static inline real shadowing(const closure *c, real numerator, real cos_i, real 
     return numerator / larger(MUTANT(4, cos_i * c->sigma, both), REAL_MIN);
 }
 
-static void eval(const closure *c, const real wi[3], value *out) {
+static inline void eval_of(map_kind kind, const closure *c, const real wi[3], value *out) {
     *out = (value){0};
     if (!(wi[2] > 0)) return;
     real h[3] = {c->wo[0] + wi[0], c->wo[1] + wi[1], c->wo[2] + wi[2]};
@@ -65,8 +54,8 @@ static void eval(const closure *c, const real wi[3], value *out) {
         for (int k = 0; k < 3; k++) h[k] *= R(0x1p60);
         h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
     }
-    const real quarter_d = transformed_density(c, h, h2) / 4;
-    const real lambda_i = view_lambda(c, wi), scale = c->map.view_z;
+    const real quarter_d = transformed_density(kind, c, h, h2) / 4;
+    const real lambda_i = view_lambda(kind, c, wi), scale = c->map.view_z;
     const real f =
         smaller(quarter_d * smaller(scale * shadowing(c, 1, wi[2], lambda_i), saturated), saturated);
     real F[3] = {1, 1, 1};
@@ -83,19 +72,19 @@ static void eval(const closure *c, const real wi[3], value *out) {
     }
 }
 
-static void sample_of(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
+static inline void sample_of(map_kind kind, const closure *c, mu_sampler sampler, const real u[3], sample *out) {
     *out = (sample){.rejected = 1};
     real n[3];
     if (sampler == MU_SAMPLE_VISIBLE) {
         real w[3];
-        map_view(&c->map, c->wo, w);
+        map_view(kind, &c->map, c->wo, w);
         sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
     } else {
         sample_slope(&c->surface->base, u, n); /* Eq. (25) */
     }
     const real r2 = n[0] * n[0] + n[1] * n[1], z2 = n[2] * n[2];
     real m[3];
-    map_normal_back(&c->map, n, m); /* Eq. (26) */
+    map_normal_back(kind, &c->map, n, m); /* Eq. (26) */
     const real length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
     if (!(length > 0)) return;
     for (int k = 0; k < 3; k++) out->wm[k] = m[k] /= length;
@@ -109,7 +98,7 @@ static void sample_of(const closure *c, mu_sampler sampler, const real u[3], sam
     /* D_M from the sampled normal itself, not from M^T m: exact however near to singular M is */
     const real stretch = length / (c->map.view_z * c->map.normal_z);
     const real d = smaller(density(&c->surface->base, r2, z2, stretch * stretch), saturated);
-    const real lambda_i = view_lambda(c, wi), scale = c->map.view_z, sigma_i = scale * wi[2] + lambda_i;
+    const real lambda_i = view_lambda(kind, c, wi), scale = c->map.view_z, sigma_i = scale * wi[2] + lambda_i;
     const real ratio =
         smaller(shadowing(c, wi[2], wi[2], lambda_i) * MUTANT(8, c->wo[2] * scale, c->sigma), 1);
     real F[3] = {1, 1, 1};
@@ -133,7 +122,29 @@ static void sample_of(const closure *c, mu_sampler sampler, const real u[3], sam
 #define STRING_(name)      #name
 #define STRING(name)       STRING_(name)
 
+/* The kernel's functions, compiled for one kind of map. */
+#define FOR_MAPS(name, kind)                                                                                 \
+    static real lambda_##name(const closure *c, const real v[3]) {                                           \
+        return view_lambda(kind, c, v);                                                                      \
+    }                                                                                                        \
+    static real sigma_##name(const closure *c, const real v[3]) {                                            \
+        return c->map.view_z * v[2] + view_lambda(kind, c, v);                                               \
+    }                                                                                                        \
+    static real density_##name(const closure *c, const real m[3]) {                                          \
+        return m[2] > 0 ? transformed_density(kind, c, m, m[0] * m[0] + m[1] * m[1] + m[2] * m[2]) : 0;      \
+    }                                                                                                        \
+    static void eval_##name(const closure *c, const real wi[3], value *out) {                                \
+        eval_of(kind, c, wi, out);                                                                           \
+    }                                                                                                        \
+    static void sample_##name(const closure *c, mu_sampler sampler, const real u[3], sample *out) {          \
+        sample_of(kind, c, sampler, u, out);                                                                 \
+    }
+#define FUNCTIONS(name) lambda_##name, sigma_##name, density_##name, eval_##name, sample_##name
+
+FOR_MAPS(general, MAP_GENERAL)
+FOR_MAPS(uniform, MAP_UNIFORM)
+
+static const kernel uniform = {STRING(DISTRIBUTION), NULL, table_bytes, prepare, FUNCTIONS(uniform)};
 extern const kernel KERNEL_NAME(DISTRIBUTION);
-const kernel KERNEL_NAME(DISTRIBUTION) = {
-    STRING(DISTRIBUTION), table_bytes, prepare, lambda_of, sigma_of, density_of, eval, sample_of,
-};
+const kernel KERNEL_NAME(DISTRIBUTION) = {STRING(DISTRIBUTION), &uniform, table_bytes, prepare,
+                                          FUNCTIONS(general)};

@@ -123,6 +123,32 @@ static void test_broken_pixels_are_clamped(void **state) {
     mu_sky_free(&sky);
 }
 
+static void count_warnings(void *context, const char *text) {
+    print_message("%s\n", text);
+    ++*(int *)context;
+}
+
+/* A trace of a negative is no news; one that can be seen is, and so is NaN. */
+static void test_what_is_clamped_is_told(void **state) {
+    (void)state;
+    static const float values[] = {0, -0.0004f, -0.4f, NAN, INFINITY};
+    for (int i = 0; i < 5; i++) {
+        int warnings = 0;
+        float pixels[24];
+        for (int k = 0; k < 24; k++) pixels[k] = 0.5f;
+        pixels[7] = values[i];
+        char file[512];
+        snprintf(file, sizeof file, "%s", write_tiff("trace.tif", pixels, 4, 2, 0));
+        const mu_light light = {.kind = MU_ENVIRONMENT, .image = file, .scale = {1, 1, 1}};
+        mu_error error = {.warn = count_warnings, .context = &warnings};
+        mu_sky sky;
+        assert_true(mu_sky_make_environment(&sky, &light, &error));
+        assert_true(i == 4 ? sky.pixels[7] > 1e11f : sky.pixels[7] == 0);
+        assert_int_equal(warnings, i > 1);
+        mu_sky_free(&sky);
+    }
+}
+
 static void refuses(const char *file, const char *expected) {
     mu_error error = {.text = ""};
     int width, height;
@@ -178,6 +204,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_broken_pixels_are_clamped),
+        cmocka_unit_test(test_what_is_clamped_is_told),
         cmocka_unit_test(test_broken_files_are_refused),
         cmocka_unit_test(test_missing_module_is_named),
     };

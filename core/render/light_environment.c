@@ -19,15 +19,23 @@
  * overflow. */
 #define BRIGHTEST 1e12f
 
-/* NaN and negative become 0, too bright and infinite the limit. */
+/* Filtering a photograph leaves negative traces beside bright edges; up to this share of the mean they are no news. */
+#define TRACE 0.01
+
+/* NaN and negative become 0, too bright and infinite the limit. Returns how many pixels that changed by more than a
+ * trace. */
 static size_t clean(float *pixels, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < 3 * count; i++)
+        if (pixels[i] > 0 && pixels[i] <= BRIGHTEST) sum += (double)pixels[i];
+    const float trace = (float)(TRACE * sum / (3.0 * (double)count));
     size_t changed = 0;
     for (size_t i = 0; i < count; i++) {
         _Bool bad = 0;
         for (float *c = pixels + 3 * i; c < pixels + 3 * i + 3; c++) {
             if (*c >= 0 && *c <= BRIGHTEST) continue;
+            if (!(*c < 0 && *c >= -trace)) bad = 1;
             *c = *c > BRIGHTEST ? BRIGHTEST : 0;
-            bad = 1;
         }
         changed += bad;
     }

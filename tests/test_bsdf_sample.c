@@ -188,10 +188,29 @@ static void blur_widens_the_narrow_axis_only(void **state) {
     }
 }
 
+/* A narrow lobe with a long tail has the width of its alpha to blur, on either side of gamma = 1. */
+static void blur_knows_gtr_by_its_alpha(void **state) {
+    (void)state;
+    const double wo[3] = {0.48, 0.6, 0.64}, wi[3] = {-0.3, -0.5, 0.8124038404635961};
+    const mu_definition e = bsdf_definition(MU_GGX, 0.1, 2, 1, 0, 0, 1);
+    for (double gamma = 0.1; gamma < 4; gamma += 0.3) {
+        bsdf b, expected;
+        mu_value_d x, y;
+        const mu_definition d = bsdf_definition(MU_GTR, 0.01, gamma, 1, 0, 0, 1);
+        bsdf_bind_double(&b, &d, wo), bsdf_bind_double(&expected, &e, wo);
+        mu_blur_d(&b.d, 0.1), mu_eval_d(&b.d, wi, &x);
+        mu_eval_d(&expected.d, wi, &y);
+        bsdf_near(x.f[0], y.f[0], 1e-12);
+        mu_blur_d(&b.d, 0.05), mu_eval_d(&b.d, wi, &y); /* it is wide enough by now */
+        assert_true(x.f[0] == y.f[0]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weight_times_pdf_is_f_cos), cmocka_unit_test(samplers_agree_on_the_albedo),
-        cmocka_unit_test(float_follows_double),      cmocka_unit_test(extremes_stay_finite),
-        cmocka_unit_test(alpha_zero_is_a_mirror),    cmocka_unit_test(blur_widens_the_narrow_axis_only)};
+        cmocka_unit_test(weight_times_pdf_is_f_cos),  cmocka_unit_test(samplers_agree_on_the_albedo),
+        cmocka_unit_test(float_follows_double),       cmocka_unit_test(extremes_stay_finite),
+        cmocka_unit_test(alpha_zero_is_a_mirror),     cmocka_unit_test(blur_widens_the_narrow_axis_only),
+        cmocka_unit_test(blur_knows_gtr_by_its_alpha)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -180,6 +180,31 @@ static void is_normalised(void **state) {
     }
 }
 
+/* What a double can hold and is well conditioned is a map, however large or small. */
+static void takes_every_scale(void **state) {
+    (void)state;
+    mu_complaint why;
+    const double most = 1.5e308, least = 1e-300, wo[3] = {0.6, 0, 0.8}, wi[3] = {0, 0.6, 0.8};
+    const double maps[][4] = {
+        {most, most, -most, most}, {most, most, -most, 1.4e308},  {most, 0, 0, most},
+        {least, 0, 0, least},      {least, least, -least, least}, {1e-170, 0, 0, 1e-170},
+        {1e160, 0, 0, 1e160},      {1e160, 1e160, 0, 2e160}};
+    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+        const mu_definition d =
+            bsdf_definition(MU_GGX, 0.3, 2, maps[i][0], maps[i][1], maps[i][2], maps[i][3]);
+        bsdf b;
+        mu_value_d value;
+        assert_true(mu_definition_check(&d, &why));
+        bsdf_bind_double(&b, &d, wo);
+        mu_eval_d(&b.d, wi, &value);
+        assert_true(isfinite(value.f[0]) && isfinite(value.pdf) && value.f[0] >= 0 && value.pdf >= 0);
+        const double sigma =
+            mu_view_d(&b.d, wo).sigma; /* between cos and what slopes without end project to */
+        assert_true(isfinite(sigma) && sigma >= wo[2]);
+        if (maps[i][0] > 1) bsdf_near(sigma, wo[2], tolerance); /* flat */
+    }
+}
+
 static void refuses_singular_maps(void **state) {
     (void)state;
     mu_complaint why;
@@ -203,6 +228,7 @@ int main(void) {
                                        cmocka_unit_test(uniform_plan_equals_general),
                                        cmocka_unit_test(is_reciprocal),
                                        cmocka_unit_test(is_normalised),
+                                       cmocka_unit_test(takes_every_scale),
                                        cmocka_unit_test(refuses_singular_maps)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

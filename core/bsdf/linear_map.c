@@ -68,7 +68,7 @@ double mu_transform_determinant(const double transform[4]) {
     double reduced[4];
     int exponent = 0;
     const double det = reduce(transform, reduced, &exponent);
-    return ldexp(fabs(det), 2 * exponent);
+    return det == 0 ? 0 : fmin(fmax(ldexp(fabs(det), 2 * exponent), DBL_MIN), DBL_MAX);
 }
 
 int mu_transform_is_similarity(const double m[4]) {
@@ -104,10 +104,10 @@ int MU(map_make)(map *out, const double m[4], double unit) {
     return 1;
 }
 
-int MU(map_widen)(map *m, double alpha) {
-    /* V = s M^-1 = rotation diag(large, small) rotation, by sums and differences of its entries; small < 0
+int MU(map_widen)(map *m, double base, double alpha) {
+    /* V = base s M^-1 = rotation diag(large, small) rotation, by sums and differences of its entries; small < 0
      * for a mirror */
-    const double z = (double)m->view_z;
+    const double z = (double)m->view_z / base;
     const double a = (double)m->view[0] / z, b = (double)m->view[1] / z, c = (double)m->view[2] / z,
                  d = (double)m->view[3] / z;
     const double e = (a + d) / 2, f = (a - d) / 2, g = (c + b) / 2, h = (c - b) / 2;

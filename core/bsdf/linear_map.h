@@ -20,9 +20,9 @@
 /* Prepares M (two rows) for a distribution whose slopes are measured in units of `unit`. 0 if M is singular.
  */
 int MU(map_make)(map *out, const double m[4], double unit);
-/* Raises the smaller slope roughness of a unit-roughness surface under the map to at least `alpha`; 1 if it
- * did. */
-int MU(map_widen)(map *m, double alpha);
+/* Raises the smaller slope roughness of a surface of roughness `base` (in slope units) under the map to at least
+ * `alpha`; 1 if it did, and then the map is that of roughness 1. */
+int MU(map_widen)(map *m, double base, double alpha);
 
 /* What a kernel was compiled for. */
 typedef enum map_kind { MAP_GENERAL, MAP_UNIFORM } map_kind; /* MAP_UNIFORM: M is a multiple of 1 */

@@ -68,8 +68,8 @@ typedef struct mu_complaint {
 
 /* 1 if the definition is good; otherwise 0, and why. */
 int mu_definition_check(const mu_definition *definition, mu_complaint *why);
-/* |det M| by a fused product difference; 0 also for a map so near to singular (|det| < 1e-30 max²) that no
- * direction survives it, and for one that is not finite. */
+/* |det M| by a fused product difference, within [DBL_MIN, DBL_MAX]; 0 for a singular map, also for one so near to it
+ * (|det| < 1e-30 max²) that no direction survives, and for one that is not finite. */
 double mu_transform_determinant(const double transform[4]);
 /* 1 if M turns, mirrors and scales alike in all directions: to an isotropic microsurface, a scale. */
 int mu_transform_is_similarity(const double transform[4]);

@@ -46,7 +46,12 @@ size_t MU(mu_surface_bytes)(const mu_definition *definition) {
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     surface *s = memory;
     const plan p = choose(d);
-    *s = (surface){.kernel = p.kernel, .general = p.kernel, .sampler = d->sampler, .alpha = R(p.alpha), .unit = 1, .name = p.name};
+    *s = (surface){.kernel = p.kernel,
+                   .general = p.kernel,
+                   .sampler = d->sampler,
+                   .alpha = R(p.alpha),
+                   .unit = 1,
+                   .name = p.name};
     s->fresnel.kind = d->fresnel;
     for (int i = 0; i < 3; i++) {
         const mu_fresnel_kind kind = d->fresnel;
@@ -61,7 +66,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     }
     /* The distributions are isotropic: what turns or mirrors alone leaves them as they are. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
-    const int is_uniform = p.kernel && mu_transform_is_similarity(d->transform);
+    const int is_uniform = p.kernel && scale <= DBL_MAX && mu_transform_is_similarity(d->transform);
     if (is_uniform) s->kernel = p.kernel->uniform;
     MU(map_make)(&s->map, is_uniform ? uniform : d->transform, s->unit);
     return s;
@@ -95,8 +100,11 @@ void MU(mu_blur)(closure *c, real alpha) {
     if (!c->kernel) { /* a mirror takes the roughness alone: M times nothing is nothing */
         const double identity[4] = {1, 0, 0, 1};
         MU(map_make)(&c->map, identity, (double)alpha);
-    } else if (!MU(map_widen)(&c->map, (double)alpha)) {
-        return;
+    } else {
+        /* gtr of gamma < 1 is measured in slopes of 1, but alpha is what there is of a lobe */
+        const surface *s = c->surface;
+        const double roughness = c->kernel == kernels[MU_GGX] ? 1 : fmin(1, (double)s->alpha / s->unit);
+        if (!MU(map_widen)(&c->map, roughness, (double)alpha)) return;
     }
     c->kernel = kernels[MU_GGX];
     c->alpha = larger(c->alpha, alpha);

@@ -44,11 +44,21 @@ static inline real shadowing(const closure *c, real numerator, real cos_i, real 
     return numerator / larger(MUTANT(4, cos_i * c->sigma, both), REAL_MIN);
 }
 
+/* h = wo + wi of unit vectors is normal to their difference. Rounding has left them a little too long or short, which
+ * turns a short h, of grazing forward scattering; |wo - wi| is 2 there. Not in the paper. Returns |h|². */
+static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
+    const real apart[3] = {wo[0] - wi[0], wo[1] - wi[1], wo[2] - wi[2]};
+    const real off = (h[0] * apart[0] + h[1] * apart[1] + h[2] * apart[2]) / (4 - h2);
+    for (int k = 0; k < 3; k++) h[k] -= off * apart[k];
+    return h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+}
+
 static inline void eval_of(map_kind kind, const closure *c, const real wi[3], value *out) {
     *out = (value){0};
     if (!(wi[2] > 0)) return;
     real h[3] = {c->wo[0] + wi[0], c->wo[1] + wi[1], c->wo[2] + wi[2]};
     real h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    if (h2 < R(0.25)) h2 = sharpen(c->wo, wi, h, h2);
     const real sum2 = h2;
     for (int i = 0; h2 < R(1e-24) && i < 32; i++) { /* wi = -wo but for rounding: h² must not underflow */
         for (int k = 0; k < 3; k++) h[k] *= R(0x1p60);
@@ -72,7 +82,8 @@ static inline void eval_of(map_kind kind, const closure *c, const real wi[3], va
     }
 }
 
-static inline void sample_of(map_kind kind, const closure *c, mu_sampler sampler, const real u[3], sample *out) {
+static inline void sample_of(map_kind kind, const closure *c, mu_sampler sampler, const real u[3],
+                             sample *out) {
     *out = (sample){.rejected = 1};
     real n[3];
     if (sampler == MU_SAMPLE_VISIBLE) {

@@ -21,7 +21,7 @@ BUILD = ROOT / os.environ.get("BUILD", "build")
 def mutants():
     """Number and description, from the comment in mutant.h that defines them."""
     text = (ROOT / "core/bsdf/mutant.h").read_text()
-    return {int(number): words for number, words in re.findall(r"^ \* - ([1-9]): (.*)$", text, re.M)}
+    return {int(number): words for number, words in re.findall(r"^ \* - ([0-9]+): (.*)$", text, re.M)}
 
 
 def environment(**extra):

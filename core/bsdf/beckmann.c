@@ -9,16 +9,16 @@
 #include "core/bsdf/ierfc.h"
 #include "core/bsdf/random.h"
 
-static inline real density(const base *b, real r2, real z2, real n2) {
+static inline real density(const base *b, const real u[3], real n2) {
     (void)b;
-    const real z = larger(z2, REAL_MIN), t = n2 / z, e = exp(-r2 / z / 2);
+    const real z2 = larger(u[2] * u[2], REAL_MIN), t = n2 / z2, e = exp(-flat_square(u) / z2 / 2);
     return e > 0 ? smaller(R(INV_PI) * square(e * t), REAL_MAX) : 0; /* t may be infinite where e is 0 */
 }
 
-static inline real z_lambda(const base *b, real r2, real z2, real z) {
-    (void)b, (void)z2;
-    const real r = sqrt(r2);
-    return r / 2 * ierfc(z / larger(r, REAL_MIN));
+static inline real z_lambda(const base *b, const real w[3]) {
+    (void)b;
+    const real r = sqrt(flat_square(w));
+    return r / 2 * ierfc(w[2] / larger(r, REAL_MIN));
 }
 
 static inline void sample_slope(const base *b, const real u[3], real n[3]) {
@@ -33,21 +33,23 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
     real u0 = u[0], u1 = u[1], accept = u[2];
     for (int i = 0; i < 128; i++) {
         cap_visible(w, 1, u0, u1, n);
-        const real r2 = n[0] * n[0] + n[1] * n[1], z2 = n[2] * n[2];
-        if (accept * R(4 * INV_PI / 2.71828182845904524) < density(b, r2, z2, r2 + z2)) return;
+        const real n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        if (accept * R(4 * INV_PI / 2.71828182845904524) < density(b, n, n2)) return;
         u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
     }
 }
 
-static size_t table_bytes(double alpha, double gamma) {
-    (void)alpha, (void)gamma;
+static size_t table_bytes(const mu_definition *d) {
+    (void)d;
     return 0;
 }
 
-static double prepare(base *b, double alpha, double gamma, void *table) {
-    (void)b, (void)gamma, (void)table;
-    return alpha;
+static double prepare(base *b, const mu_definition *d, void *table) {
+    (void)b, (void)table;
+    return d->alpha;
 }
+
+enum { TRAITS = PICKS };
 
 #define DISTRIBUTION beckmann
 #include "core/bsdf/transformed.h"

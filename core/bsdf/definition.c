@@ -11,7 +11,9 @@ mu_definition mu_definition_default(void) {
         .ndf = MU_GGX,
         .alpha = 0.3,
         .gamma = 2,
+        .exponent = 10,
         .transform = {1, 0, 0, 1},
+        .masking = MU_HEIGHT_CORRELATED,
         .schlick = {1, 1, 1},
         .dielectric = 1.5,
         .n = {0.06, 0.06, 0.05},
@@ -40,6 +42,18 @@ static int check_fresnel(const mu_definition *d, mu_complaint *why) {
     return 1;
 }
 
+static int check_transmission(const mu_definition *d, mu_complaint *why) {
+    if (!d->transmission) return 1;
+    why->field = "transmission";
+    snprintf(why->text, sizeof why->text, "%s",
+             d->fresnel != MU_FRESNEL_DIELECTRIC
+                 ? "true needs a dielectric: fresnel says how much passes, and how far it bends"
+             : d->sampler != MU_SAMPLE_VISIBLE
+                 ? "true needs the visible sampler: the others know reflection alone"
+                 : "");
+    return !why->text[0];
+}
+
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
         return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
@@ -47,6 +61,15 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         return complain(why, "alpha", d->alpha, "gtr is defined for alpha in [0, 1]");
     if (d->ndf == MU_GTR && !(d->gamma >= 0 && d->gamma <= DBL_MAX))
         return complain(why, "gamma", d->gamma, "gtr is defined for finite gamma of at least 0");
+    if (d->ndf == MU_STD && !(d->gamma > 1.5 && d->gamma <= DBL_MAX))
+        return complain(why, "gamma", d->gamma, "std is defined for finite gamma above 1.5");
+    if (d->ndf == MU_SHEEN && d->alpha == 0)
+        return complain(why, "alpha", 0, "sheen is defined for alpha above 0");
+    if (d->ndf == MU_PHONG && !(d->exponent >= 0 && d->exponent <= DBL_MAX))
+        return complain(why, "exponent", d->exponent, "phong is defined for finite exponents of at least 0");
+    for (int i = 0; i < 2; i++)
+        if (!(fabs(d->tilt[i]) <= DBL_MAX))
+            return complain(why, "tilt", d->tilt[i], "a mean slope is finite");
     if (mu_transform_determinant(d->transform) == 0) {
         const double *m = d->transform;
         why->field = "transform";
@@ -56,7 +79,7 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
                  m[0], m[1], m[2], m[3]);
         return 0;
     }
-    return check_fresnel(d, why);
+    return check_fresnel(d, why) && check_transmission(d, why);
 }
 
 #endif

@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * distribution.h: what a normal distribution must say of itself, in its own space. It never hears of M.
+ * distribution.h: what a normal distribution must say of itself, in its own space. It never hears of M, of tilt, of
+ * masking forms or of refraction.
  *
  * One file per distribution defines the functions below (static inline), then
  *     #define DISTRIBUTION name
  *     #include "core/bsdf/transformed.h"
- * which writes the whole BRDF under any M around them, without a call in between, and one row in surface.c.
+ * which writes the whole BSDF under any map around them, without a call in between, and one row in surface.c.
  *
  * Slopes are measured in a unit that the distribution chooses (GGX and Beckmann: alpha itself, so that they
- * have no parameter left). Vectors are not normalised: a normal is given by r2 = x² + y² and z2 = z², a
- * direction likewise.
+ * have no parameter left). Its mean slope is 0. Vectors are not normalised.
  *
- *   real density(const base *b, real r2, real z2, real n2)
- *       n2² times D of the unnormalised normal; D(k u) = k^-4 D(u). D = P22(r2/z2) / z2², 1/sr.
- *   real z_lambda(const base *b, real r2, real z2, real z)
- *       z Lambda of the unnormalised direction: sigma = z + z Lambda, finite where z = 0. Degree 1.
+ *   real density(const base *b, const real u[3], real n2)
+ *       n2² times D of the unnormalised normal; D(k u) = k^-4 D(u). D = P22(slope) / u.z^4, 1/sr. u.z >= 0.
+ *   real z_lambda(const base *b, const real w[3])
+ *       z Lambda of the unnormalised direction, w.z >= 0: the area that faces away, sigma(-w) = sigma(w) - w.z;
+ *       finite where w.z = 0. Degree 1.
  *   void sample_slope(const base *b, const real u[3], real n[3])
  *       a normal by D cos, Eq. (25); any length.
  *   void sample_visible(const base *b, const real w[3], const real u[3], real n[3])
- *       a normal by the visible normals from w, Eq. (27); w and n of any length.
- *   double prepare(base *b, double alpha, double gamma, void *table)
+ *       a normal by the visible normals from w, Eq. (27); w and n of any length, w.z of any sign.
+ *   size_t table_bytes(const mu_definition *d)
+ *   double prepare(base *b, const mu_definition *d, void *table)
  *       fills b and the table; returns the slope unit.
- *   size_t table_bytes(double alpha, double gamma)
+ *   TRAITS: a constant, OR of the bits below.
  */
 #ifndef MU_DISTRIBUTION_H
 #define MU_DISTRIBUTION_H
@@ -31,21 +33,33 @@
 
 enum { MU_SHAPE = 20 };
 
+enum {
+    PICKS = 1,      /* sample_visible uses u[2] */
+    ANISOTROPIC = 2 /* turning the microsurface changes it */
+};
+
 /* A prepared distribution. What `shape` holds is each one's own business. */
 typedef struct MU(mu_base) {
     real shape[MU_SHAPE];
-    const real *table;
+    const void *table;
 } base;
 
-/* A distribution with the generic transform compiled around it. */
+/* x² + y², which saturates rather than overflow. */
+static inline real flat_square(const real u[3]) {
+    return smaller(u[0] * u[0] + u[1] * u[1], REAL_MAX / 16);
+}
+
+/* A distribution with the generic transform compiled around it, for one plan (linear_map.h). */
 struct MU(mu_kernel) {
     const char *name;
-    const kernel *uniform; /* the same where M is a multiple of 1: it multiplies no matrix */
-    size_t (*table_bytes)(double alpha, double gamma);
-    double (*prepare)(base *b, double alpha, double gamma, void *table);
-    real (*lambda)(const closure *c, const real w[3]); /* view_z cos Lambda_M */
-    real (*sigma)(const closure *c, const real w[3]);  /* view_z sigma_M */
+    const kernel *plans[PLAN_COUNT]; /* this distribution's kernels */
+    unsigned traits;
+    size_t (*table_bytes)(const mu_definition *d);
+    double (*prepare)(base *b, const mu_definition *d, void *table);
+    void (*view)(const closure *c, const real w[3], real *sigma,
+                 real *lambda); /* view_z sigma_M, view_z cos Lambda_M */
     real (*density)(const closure *c, const real wm[3]);
+    real (*shadowing)(const closure *c, const real i[3], int transmitted); /* G2 */
     void (*eval)(const closure *c, const real wi[3], value *out);
     void (*sample)(const closure *c, mu_sampler sampler, const real u[3], sample *out);
 };
@@ -55,8 +69,13 @@ typedef struct MU(mu_fresnel) {
     real a[3], b[3]; /* F0; or n and k; or a[0] = eta */
 } fresnel;
 
-/* F at the cosine between a direction and the micronormal (fresnel.c). */
-void MU(fresnel_eval)(const fresnel *f, real cosine, real out[3]);
+/* F at the cosine between a direction and the micronormal (fresnel.c). `eta` is n_transmitted/n_incident of a
+ * dielectric from this side. */
+void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]);
+real MU(fresnel_dielectric)(real eta, real cosine);
+
+/* A surface without microfacets (mirror.c). */
+void MU(mirror_sample)(const closure *c, const real u[3], sample *out);
 
 struct MU(mu_surface) {
     const kernel *kernel; /* of the definition's M, and of any M; NULL: a mirror */
@@ -64,9 +83,13 @@ struct MU(mu_surface) {
     base base;
     fresnel fresnel;
     mu_sampler sampler;
+    mu_masking_form masking;
+    int transmission;
     real alpha;
-    double unit; /* of slopes */
-    map map;     /* of the definition's M */
+    real uniform_share; /* of the samplers that mix with uniform directions */
+    double unit;        /* of slopes */
+    double tilt[2];
+    map map; /* of the definition's M */
     size_t table_bytes;
     const char *name;
 };

@@ -14,7 +14,7 @@ static void schlick(const fresnel *f, real c, real out[3]) {
 }
 
 /* n_below / n_above = eta, also below 1, where F = 1 beyond the critical angle. */
-static real dielectric(real eta, real c) {
+real MU(fresnel_dielectric)(real eta, real c) {
     const real g2 = (eta - 1) * (eta + 1) + c * c;
     if (!(g2 > 0)) return eta == 1 ? 0 : 1;
     const real g = sqrt(g2), sum = g + c, s = (eta - 1) * (eta + 1) / square(sum); /* (g - c) / (g + c) */
@@ -33,13 +33,13 @@ static real conductor(real n, real k, real c) {
     return smaller(rs * (1 + rp) / 2, 1);
 }
 
-void MU(fresnel_eval)(const fresnel *f, real cosine, real out[3]) {
+void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]) {
     switch (f->kind) {
     case MU_FRESNEL_SCHLICK:
         schlick(f, cosine, out);
         return;
     case MU_FRESNEL_DIELECTRIC:
-        out[0] = out[1] = out[2] = dielectric(f->a[0], cosine);
+        out[0] = out[1] = out[2] = MU(fresnel_dielectric)(eta, cosine);
         return;
     case MU_FRESNEL_CONDUCTOR:
         for (int k = 0; k < 3; k++) out[k] = conductor(f->a[k], f->b[k], cosine);

@@ -7,15 +7,17 @@
 #include "core/bsdf/cap.h"
 #include "core/bsdf/distribution.h"
 
-static inline real density(const base *b, real r2, real z2, real n2) {
+static inline real density(const base *b, const real u[3], real n2) {
     (void)b;
-    const real t = n2 / (r2 + z2);
+    const real t = n2 / (flat_square(u) + u[2] * u[2]);
     return R(INV_PI) * t * t;
 }
 
-static inline real z_lambda(const base *b, real r2, real z2, real z) {
+static inline real z_lambda(const base *b, const real w[3]) {
     (void)b;
-    return r2 / larger(2 * (sqrt(z2 + r2) + z), REAL_MIN); /* (sqrt - z) / 2 without its cancellation */
+    const real r2 = flat_square(w);
+    return r2 / larger(2 * (sqrt(w[2] * w[2] + r2) + w[2]),
+                       REAL_MIN); /* (sqrt - z) / 2 without its cancellation */
 }
 
 static inline void sample_slope(const base *b, const real u[3], real n[3]) {
@@ -28,15 +30,17 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
     cap_visible(w, 1, u[0], u[1], n);
 }
 
-static size_t table_bytes(double alpha, double gamma) {
-    (void)alpha, (void)gamma;
+static size_t table_bytes(const mu_definition *d) {
+    (void)d;
     return 0;
 }
 
-static double prepare(base *b, double alpha, double gamma, void *table) {
-    (void)b, (void)gamma, (void)table;
-    return alpha;
+static double prepare(base *b, const mu_definition *d, void *table) {
+    (void)b, (void)table;
+    return d->alpha;
 }
+
+enum { TRAITS = 0 };
 
 #define DISTRIBUTION ggx
 #include "core/bsdf/transformed.h"

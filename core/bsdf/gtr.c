@@ -7,43 +7,30 @@
  * which nears Beckmann, keeps its width near 1; gamma <  1: U = 1, since the mass lies at slopes near 1
  * however small alpha is.
  */
-#include "core/bsdf/gtr.h"
-#include <stdint.h>
-#include <string.h>
-
 #include "core/bsdf/cap.h"
+#include "core/bsdf/gtr.h"
 #include "core/bsdf/gtr_mixture.h"
+#include "core/bsdf/smith.h"
 
 _Static_assert((int)GTR_SHAPE <= (int)MU_SHAPE, "GTR has more constants than a base holds");
 
-static inline real density(const base *b, real r2, real z2, real n2) {
+static inline real density(const base *b, const real u[3], real n2) {
     const real *g = b->shape;
+    const real r2 = flat_square(u), z2 = u[2] * u[2];
     const real ref = z2 + g[GTR_REF] * r2, other = g[GTR_OTHER_Z] * z2 + g[GTR_UNIT] * r2 * g[GTR_UNIT];
     const real t = n2 / ref;
     return g[GTR_SCALE] * t * t * pow(larger(other / ref, REAL_MIN), g[GTR_EXPONENT]);
 }
 
-static inline real z_lambda(const base *b, real r2, real z2, real z) {
+static inline real z_lambda(const base *b, const real w[3]) {
     const real *g = b->shape;
+    const real r2 = flat_square(w), z = w[2];
 #if MU_REAL_BITS == 53
-    (void)z2;
     return mu_gtr_z_lambda(g[GTR_ALPHA], g[GTR_GAMMA], smaller(sqrt(r2) / g[GTR_UNIT], 1e300), z, 16);
 #else
-    const float table_r2 = r2 * g[GTR_TABLE_R2], sum = larger(sqrtf(z2 + table_r2) + z, REAL_MIN);
-    const float ggx = table_r2 / sum, v = smaller(ggx / sum, 0x0.ffffffp0f);
-    uint32_t bits;
-    memcpy(&bits, &v, sizeof bits);
-    const int32_t octaves = (int32_t)g[GTR_OCTAVES], piece = (int32_t)(bits >> 22) - 2 * (127 - octaves) + 1;
-    const uint32_t centred =
-        (bits & 0x003fffff) | 0x3f800000; /* mantissa within its half octave: 1 ... 1.5 */
-    float mantissa;
-    memcpy(&mantissa, &centred, sizeof mantissa);
-    const float x = piece > 0 ? 4 * mantissa - 5 : 2 * (v * g[GTR_TO_FIRST]) - 1;
-    const float *c = b->table + GTR_CELL * (piece > 0 ? piece : 0);
-    const float x2 = x * x, x4 = x2 * x2;
-    const float phi =
-        ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2) + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4;
-    return ggx / 2 * larger(phi, 0);
+    const float table_r2 = r2 * g[GTR_TABLE_R2], sum = larger(sqrtf(z * z + table_r2) + z, REAL_MIN);
+    const float ggx = table_r2 / sum;
+    return ggx / 2 * larger(smith_table_at(b->table, (int32_t)g[GTR_OCTAVES], g[GTR_TO_FIRST], ggx / sum), 0);
 #endif
 }
 
@@ -77,8 +64,8 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
     real u0 = u[0], u1 = u[1], accept = u[2];
     for (int i = 0; i < 128; i++) {
         cap_visible(w, 1, u0, u1, n);
-        const real r2 = n[0] * n[0] + n[1] * n[1], z2 = n[2] * n[2];
-        if (accept * g[GTR_BOUND] < density(b, r2, z2, r2 + z2)) return;
+        const real n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        if (accept * g[GTR_BOUND] < density(b, n, n2)) return;
         u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
     }
 }
@@ -92,13 +79,13 @@ static double table_unit(double alpha, double gamma) {
     return fmin(alpha, unit_of(alpha, gamma));
 }
 
-static size_t table_bytes(double alpha, double gamma) {
-    const size_t pieces = 1 + 2 * (size_t)mu_gtr_table_octaves(table_unit(alpha, gamma));
-    return MU_REAL_BITS == 53 ? 0 : pieces * GTR_CELL * sizeof(float);
+static size_t table_bytes(const mu_definition *d) {
+    return MU_REAL_BITS == 53 ? 0 : mu_smith_table_bytes(mu_smith_octaves(table_unit(d->alpha, d->gamma)));
 }
 
-static double prepare(base *b, double alpha, double gamma, void *table) {
+static double prepare(base *b, const mu_definition *definition, void *table) {
     real *g = b->shape;
+    const double alpha = definition->alpha, gamma = definition->gamma;
     const double unit = unit_of(alpha, gamma), a = alpha * alpha, peak = mu_gtr_peak(alpha, gamma),
                  d = 1 - gamma;
     const double ref = gamma < 1 ? 1 : 1 / fmax(1, peak), L = -log(alpha);
@@ -128,7 +115,7 @@ static double prepare(base *b, double alpha, double gamma, void *table) {
     }
     b->table = NULL;
     if (table && MU_REAL_BITS == 24) {
-        const int octaves = mu_gtr_table_octaves(table_unit(alpha, gamma));
+        const int octaves = mu_smith_octaves(table_unit(alpha, gamma));
         g[GTR_OCTAVES] = R(octaves);
         g[GTR_TO_FIRST] = R(ldexp(1, octaves));
         g[GTR_TABLE_R2] = R(pow(table_unit(alpha, gamma) / unit, 2));
@@ -137,6 +124,8 @@ static double prepare(base *b, double alpha, double gamma, void *table) {
     }
     return unit;
 }
+
+enum { TRAITS = PICKS };
 
 #define DISTRIBUTION gtr
 #include "core/bsdf/transformed.h"

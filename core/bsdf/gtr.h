@@ -18,9 +18,7 @@ double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digit
 /* (gamma - 1) ln(a) / expm1(...) (1 - a) / -ln(a): pi a P22(0), 1 for gamma = 2; no 0/0 anywhere. */
 double mu_gtr_peak(double alpha, double gamma);
 
-/* z Lambda / that of unit GGX as a function of v = tan²(theta/2): gtr_table.c. Float only. */
-enum { GTR_CELL = 8, GTR_OCTAVES_MAX = 66 };
-int mu_gtr_table_octaves(double unit);
+/* The float table (smith.h) of z Lambda / that of unit GGX, with slopes in `unit`. */
 void mu_gtr_table_build(float *table, int octaves, double alpha, double gamma, double unit);
 
 /* Slots of base.shape */
@@ -38,6 +36,7 @@ enum {
     GTR_LEFT,  /* gamma < 2: masses of the envelope's pieces, gtr_mixture.h */
     GTR_MIDDLE,
     GTR_MIDDLE_ROOT,
+    GTR_MIDDLE_SQUARE,
     GTR_RIGHT,
     GTR_TABLE_R2, /* r² of the table per r²; */
     GTR_OCTAVES,

@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * gtr_smith.c: the exact Smith integral of GTR for every gamma >= 0. Compiled once, in double. Not in the
- * paper, whose Appendix A is exact at integers only.
- *
- * With Q(x) = P(slope² > x), any isotropic distribution has
- *     z Lambda(r/z) = 1/pi int_0^inf Q((z² + y²) / r²) y² / (z² + y²) dy.
- * With y = r e^s every term is positive and all singularities lie on Im s = +-pi/2, so the trapezoid rule
- * converges as exp(-pi²/h); for large gamma Q nears a Gaussian, which leaves a strip of pi/4 and
- * exp(-pi²/2h), still below 1e-16 at h = 1/8. The right tail falls as e^-s only; s = p + e^(p - right - 3)
- * makes it short and costs 5 % of the strip at the rightmost singularity.
+ * gtr_smith.c: the exact Smith integral of GTR for every gamma >= 0, and what its float table holds. Compiled once, in
+ * double. Not in the paper, whose Appendix A is exact at integers only.
  */
 #include "core/bsdf/gtr.h"
+#include "core/bsdf/smith.h"
 
 #if MU_REAL_BITS == 53
 
@@ -32,7 +26,8 @@ static survival survival_make(double alpha, double gamma) {
 }
 
 /* Q = (q^d - 1) / (a^d - 1), q = (x + a) / (1 + x) */
-static double survival_at(const survival *q, double x) {
+static double survival_at(const void *shape, double x) {
+    const survival *q = shape;
     const double away = q->one_minus_a / (1 + x);
     const double ln_q =
         away < 0.5 ? log1p(-away) : fmax(log((x + q->a) / (1 + x)), q->ln_a); /* a may underflow */
@@ -50,19 +45,24 @@ double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digit
         return c * r / (4 * zeta);
     }
     const survival q = survival_make(alpha, gamma);
-    const double h = digits > 9 ? 0.125 : 0.25, negligible = digits > 9 ? 1e-18 : 1e-11;
-    const double zeta2 = zeta * zeta, right = log1p(zeta2) / 2;
-    if (survival_at(&q, zeta2) == 0)
-        return 0; /* Q falls with x: large gamma, small alpha underflow throughout */
-    double sum = 0, p = right + (digits > 9 ? 6.625 : 6.25);
     const double end = log(alpha) - log(fmax(1, gamma)) / 2 - 45; /* y far below all widths of Q */
-    for (; p > end; p -= h) {
-        const double e = exp(p - right - 3), y = exp(p + e), y2 = y * y, x = zeta2 + y2;
-        const double term = (1 + e) * survival_at(&q, x) * (zeta2 > 0 ? y * (y2 / x) : y);
-        sum += term;
-        if (sum > 0 ? term <= negligible * sum : y2 < 1e-30 * zeta2) break; /* below zeta terms only fall */
-    }
-    return r / PI * h * sum;
+    return mu_smith_z_lambda(survival_at, &q, end, r, z, digits);
+}
+
+/* phi = Lambda / that of unit GGX. */
+typedef struct tabulated {
+    double alpha, gamma, unit;
+} tabulated;
+
+static double phi(const void *shape, double v) {
+    const tabulated *t = shape;
+    const double z = (1 - v) / (1 + v), r = 2 * sqrt(v) / (1 + v);
+    return mu_gtr_z_lambda(t->alpha, t->gamma, r / t->unit, z, 9) * (1 + v) / v;
+}
+
+void mu_gtr_table_build(float *table, int octaves, double alpha, double gamma, double unit) {
+    const tabulated shape = {alpha, gamma, unit};
+    mu_smith_table_build(table, octaves, phi, &shape);
 }
 
 #endif

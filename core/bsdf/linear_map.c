@@ -76,7 +76,7 @@ int mu_transform_is_similarity(const double m[4]) {
 }
 #endif
 
-int MU(map_make)(map *out, const double m[4], double unit) {
+int MU(map_make)(map *out, const double m[4], const double tilt[2], double unit) {
     double r[4];
     int exponent = 0;
     const double det = reduce(m, r, &exponent);
@@ -101,6 +101,7 @@ int MU(map_make)(map *out, const double m[4], double unit) {
     out->view[2] = R(MUTANT(2, r[2], -r[2]) * view);
     out->view[3] = R(MUTANT(2, r[3], r[0]) * view);
     out->view_z = R(scale);
+    for (int i = 0; i < 2; i++) out->tilt[i] = R(MUTANT(10, -tilt[i], tilt[i]) / unit);
     return 1;
 }
 
@@ -119,5 +120,10 @@ int MU(map_widen)(map *m, double base, double alpha) {
     const double e2 = q2 * cos(sum), h2 = q2 * sin(sum), f2 = r2 * cos(difference), g2 = r2 * sin(difference);
     const double det = wide * narrow;
     const double inverse[4] = {(e2 - f2) / det, -(g2 - h2) / det, -(g2 + h2) / det, (e2 + f2) / det};
-    return MU(map_make)(m, inverse, 1);
+    /* the tilt acts before M: t V has to stay as M changes to V'^-1 */
+    const double t[2] = {(double)m->tilt[0], (double)m->tilt[1]},
+                 mean[2] = {t[0] * a / base + t[1] * c / base, t[0] * b / base + t[1] * d / base};
+    const double tilt[2] = {mean[0] * inverse[0] + mean[1] * inverse[2],
+                            mean[0] * inverse[1] + mean[1] * inverse[3]};
+    return MU(map_make)(m, inverse, tilt, 1);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * linear_map.h: the 2x2 map M of Eq. (9) acting on directions and micronormals. It knows no distribution.
+ * linear_map.h: the 2x2 map M of Eq. (9), and a tilt, acting on directions and micronormals. It knows no
+ * distribution.
  *
  * Everything a distribution answers is homogeneous: D of an unnormalised normal has degree -4, the projected
  * area sigma of an unnormalised direction degree 1. So nothing is ever normalised, and Eq. (22) reads
@@ -10,6 +11,9 @@
  *
  * Choosing the scale in advance keeps every intermediate within range for M scaled by 1e+-12 and more, in
  * float.
+ *
+ * Not in the paper: a tilt t adds t.p to the height over position p before M acts, so that the mean slope of the
+ * microsurface is t: (p, h) -> (M p, h + t.p), of determinant det M as before. Whatever holds for M holds for it.
  */
 #ifndef MU_LINEAR_MAP_H
 #define MU_LINEAR_MAP_H
@@ -17,39 +21,47 @@
 #include "core/bsdf/mutant.h"
 #include "core/bsdf/real.h"
 
-/* Prepares M (two rows) for a distribution whose slopes are measured in units of `unit`. 0 if M is singular.
- */
-int MU(map_make)(map *out, const double m[4], double unit);
+/* Prepares M (two rows) and the tilt for a distribution whose slopes are measured in units of `unit`. 0 if M is
+ * singular. */
+int MU(map_make)(map *out, const double m[4], const double tilt[2], double unit);
 /* Raises the smaller slope roughness of a surface of roughness `base` (in slope units) under the map to at least
- * `alpha`; 1 if it did, and then the map is that of roughness 1. */
+ * `alpha`; 1 if it did, and then the map is that of roughness 1. The mean slope stays. */
 int MU(map_widen)(map *m, double base, double alpha);
 
 /* What a kernel was compiled for. */
-typedef enum map_kind { MAP_GENERAL, MAP_UNIFORM } map_kind; /* MAP_UNIFORM: M is a multiple of 1 */
+typedef enum plan_kind {
+    PLAN_GENERAL, /* any M */
+    PLAN_UNIFORM, /* M is a multiple of 1: no matrix is multiplied */
+    PLAN_FULL, /* any M, with all that the two others leave out: tilt, masking forms, refraction, mixed samplers */
+    PLAN_COUNT
+} plan_kind;
 
 /* v = (rows [a b], [c d]) u. */
-static inline void matrix_times(map_kind kind, real a, real b, real c, real d, const real u[2], real v[2]) {
-    v[0] = kind == MAP_UNIFORM ? a * u[0] : a * u[0] + b * u[1];
-    v[1] = kind == MAP_UNIFORM ? a * u[1] : c * u[0] + d * u[1];
+static inline void matrix_times(plan_kind plan, real a, real b, real c, real d, const real u[2], real v[2]) {
+    v[0] = plan == PLAN_UNIFORM ? a * u[0] : a * u[0] + b * u[1];
+    v[1] = plan == PLAN_UNIFORM ? a * u[1] : c * u[0] + d * u[1];
 }
 
-/* u = M^T m, Eq. (13) and (14), in slope units: |u_xy|^2 and u_z^2. */
-static inline void map_normal(map_kind kind, const map *m, const real n[3], real *r2, real *z2) {
-    real u[2];
-    matrix_times(kind, m->normal[0], m->normal[1], m->normal[2], m->normal[3], n, u);
-    *r2 = smaller(u[0] * u[0] + u[1] * u[1], REAL_MAX / 16); /* saturates rather than overflow */
-    *z2 = square(m->normal_z * n[2]);
+/* u = M^T m, Eq. (13) and (14), in slope units. */
+static inline void map_normal(plan_kind plan, const map *m, const real n[3], real u[3]) {
+    matrix_times(plan, m->normal[0], m->normal[1], m->normal[2], m->normal[3], n, u);
+    u[2] = m->normal_z * n[2];
+    if (plan == PLAN_FULL) u[0] += m->tilt[0] * u[2], u[1] += m->tilt[1] * u[2];
 }
 
-/* w = M^-1 v, Eq. (12), times view_z. */
-static inline void map_view(map_kind kind, const map *m, const real v[3], real w[3]) {
-    matrix_times(kind, m->view[0], m->view[1], m->view[2], m->view[3], v, w);
-    w[2] = m->view_z * v[2];
+/* w = M^-1 v, Eq. (12), times view_z. Returns what the tilt adds to w.z. */
+static inline real map_view(plan_kind plan, const map *m, const real v[3], real w[3]) {
+    matrix_times(plan, m->view[0], m->view[1], m->view[2], m->view[3], v, w);
+    const real raised = plan == PLAN_FULL ? -(m->tilt[0] * w[0] + m->tilt[1] * w[1]) : 0;
+    w[2] = m->view_z * v[2] + raised;
+    return raised;
 }
 
 /* m = M^-T u, Eq. (26), not normalised. */
-static inline void map_normal_back(map_kind kind, const map *m, const real u[3], real n[3]) {
-    matrix_times(kind, m->view[0], m->view[2], m->view[1], m->view[3], u, n);
+static inline void map_normal_back(plan_kind plan, const map *m, const real u[3], real n[3]) {
+    const real flat[2] = {u[0] - (plan == PLAN_FULL ? m->tilt[0] * u[2] : 0),
+                          u[1] - (plan == PLAN_FULL ? m->tilt[1] * u[2] : 0)};
+    matrix_times(plan, m->view[0], m->view[2], m->view[1], m->view[3], flat, n);
     n[2] = m->view_z * u[2];
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * musurf.h: reflection by microfacets whose microsurface is linearly transformed.
+ * musurf.h: reflection and refraction by microfacets whose microsurface is linearly transformed.
  *
  *     mu_definition d = mu_definition_default();          // GGX, alpha 0.3, identity, F = 1
  *     d.ndf = MU_GTR; d.gamma = 1.7;
@@ -36,8 +36,29 @@
 extern "C" {
 #endif
 
-typedef enum mu_ndf { MU_GGX, MU_BECKMANN, MU_GTR, MU_NDF_COUNT } mu_ndf;
-typedef enum mu_sampler { MU_SAMPLE_VISIBLE, MU_SAMPLE_NDF } mu_sampler;
+typedef enum mu_ndf {
+    MU_GGX,      /* Trowbridge & Reitz 1975 */
+    MU_BECKMANN, /* Gaussian slopes */
+    MU_GTR,      /* generalised Trowbridge-Reitz, Burley 2012, of tail gamma */
+    MU_STD,      /* Student-t distribution, Ribardiere et al. 2017, of tail gamma */
+    MU_PHONG,    /* D = (n + 2) cos^n / 2 pi */
+    MU_SHEEN,    /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
+    MU_FLAT,     /* no microfacets: a mirror or a pane */
+    MU_NDF_COUNT
+} mu_ndf;
+typedef enum mu_sampler {
+    MU_SAMPLE_VISIBLE, /* visible normals, Eq. (28): the exact one of every distribution */
+    MU_SAMPLE_NDF,     /* D cos, Eq. (26) */
+    MU_SAMPLE_MIXED, /* Appendix B: D cos, and uniform directions with probability alpha, by the balance heuristic */
+    MU_SAMPLE_VISIBLE_UNIFORM, /* visible normals, and 3 of 10 directions uniform: for long tails seen from above */
+    MU_SAMPLER_COUNT
+} mu_sampler;
+typedef enum mu_masking_form {
+    MU_SEPARABLE,         /* G1(wo) G1(wi) */
+    MU_HEIGHT_CORRELATED, /* 1 / (1 + Lambda_o + Lambda_i) */
+    MU_DIRECTION_CORRELATED, /* 1 / (1 + max Lambda + (1 - g) min Lambda), g = 1 where both come from one azimuth */
+    MU_MASKING_COUNT
+} mu_masking_form;
 typedef enum mu_fresnel_kind {
     MU_FRESNEL_NONE,
     MU_FRESNEL_SCHLICK,
@@ -48,10 +69,14 @@ typedef enum mu_fresnel_kind {
 /* What a surface is. Doubles whatever the precision of shading. */
 typedef struct mu_definition {
     mu_ndf ndf;
-    double alpha;        /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror */
-    double gamma;        /* the tail of GTR: >= 0; ignored by the others */
+    double alpha;        /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror. Sheen: its r, > 0 */
+    double gamma;        /* the tail: of GTR >= 0, of STD > 3/2; ignored by the others */
+    double exponent;     /* of Phong, >= 0; ignored by the others */
     double transform[4]; /* M: the two rows; any finite, non-singular map, mirrors too */
+    double tilt[2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; seed 001's theta_x, theta_y */
     mu_sampler sampler;
+    mu_masking_form masking;
+    int transmission; /* also refracts: then Fresnel must be dielectric, and the surface has two sides */
     mu_fresnel_kind fresnel;
     double schlick[3]; /* reflectance at normal incidence */
     double dielectric; /* n_below / n_above */
@@ -73,6 +98,12 @@ int mu_definition_check(const mu_definition *definition, mu_complaint *why);
 double mu_transform_determinant(const double transform[4]);
 /* 1 if M turns, mirrors and scales alike in all directions: to an isotropic microsurface, a scale. */
 int mu_transform_is_similarity(const double transform[4]);
+
+/* The ellipsoid distribution of seed 001, Eq. (1), by its A (three rows): it is GGX of alpha 1 under the transform and
+ * the tilt written here (the family is closed under M: D_A under M is D of A M^-1). 0 if A is singular or not finite. */
+int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]);
+/* A = S R, seed 001 Eq. (2) and (3): roughness along the axes, then rotations in radians. */
+void mu_ellipsoid_matrix(const double alpha[2], const double theta[3], double A[9]);
 
 /* n and k of a metal at three wavelengths, by chemical symbol; 0 if it is not known. The names,
  * NULL-terminated. */

@@ -4,10 +4,12 @@
 
 /* A linear map, prepared (linear_map.c). With s the common slope unit that a distribution asked for:
  *   normals     u = (normal m_xy, normal_z m_z)   is M^T m / s up to a scale chosen so that D_M(m) = D(u);
- *   directions  w = (view v_xy, view_z v_z)       is M^-1 v scaled by view_z. */
+ *   directions  w = (view v_xy, view_z v_z)       is M^-1 v scaled by view_z;
+ * and with a tilt t, in slope units, u_xy += t u_z and w_z -= t w_xy. */
 typedef struct MU_SUFFIX(mu_map) {
     MU_REAL normal[4], normal_z;
     MU_REAL view[4], view_z;
+    MU_REAL tilt[2];
 } MU_SUFFIX(mu_map);
 
 typedef struct MU_SUFFIX(mu_kernel) MU_SUFFIX(mu_kernel);
@@ -18,14 +20,17 @@ typedef struct MU_SUFFIX(mu_closure) {
     const MU_SUFFIX(mu_surface) * surface;
     const MU_SUFFIX(mu_kernel) * kernel; /* NULL: a mirror */
     MU_SUFFIX(mu_map) map;
-    MU_REAL wo[3];
-    MU_REAL sigma; /* view_z times the projected area sigma_M(wo) */
+    MU_REAL wo[3];         /* turned over if it came from below: all is as seen from wo.z > 0 */
+    MU_REAL sigma, lambda; /* view_z times the projected area sigma_M(wo), and times cos Lambda */
     MU_REAL alpha;
+    MU_REAL side; /* +1, or -1: wo was below, and all directions in and out are turned over */
+    MU_REAL eta;  /* of a dielectric: n_transmitted / n_incident, seen from wo */
+    int importance; /* set it after mu_bind: importance is transported, not radiance. Matters to refraction only */
 } MU_SUFFIX(mu_closure);
 
 typedef struct MU_SUFFIX(mu_value) {
-    MU_REAL f[3]; /* BRDF with F, without the cosine */
-    MU_REAL pdf;  /* of sampling wi given wo */
+    MU_REAL f[3]; /* BSDF with F or 1 - F, without the cosine */
+    MU_REAL pdf;  /* of sampling wi given wo; of a surface that transmits, with the choice F or 1 - F */
     MU_REAL pdf_reverse;
 } MU_SUFFIX(mu_value);
 
@@ -35,7 +40,9 @@ typedef struct MU_SUFFIX(mu_sample) {
     MU_REAL weight[3]; /* f cos(wi) / pdf = F G2 / G1, analytic */
     MU_REAL pdf, pdf_reverse;
     int rejected; /* wi fell below the horizon: all else but wm is 0 */
-    int delta;    /* a mirror: f is 0 and pdf is 1, its discrete probability */
+    int delta;    /* a mirror or a pane: f is 0 and pdf is the probability of this one direction */
+    int transmitted;
+    MU_REAL eta; /* n_transmitted / n_incident along this path; 1 for reflection */
 } MU_SUFFIX(mu_sample);
 
 /* Quantities of one direction, of a micronormal, of a pair. */
@@ -57,15 +64,15 @@ size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
 /* What the definition came down to: "ggx", "gtr table", "mirror", ... */
 const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);
 
-/* Binds wo (and, unless NULL, an M of this point in place of the definition's). 0: black from here (wo on or
- * below the horizon, M singular or not finite): eval and sample must not be called; mu_view and mu_normal
- * may, if M is good. */
+/* Binds wo (and, unless NULL, an M of this point in place of the definition's). 0: black from here (wo on the
+ * horizon, or below it and nothing is transmitted; M singular or not finite): eval and sample must not be called;
+ * mu_view and mu_normal may, if M is good. */
 int MU_SUFFIX(mu_bind)(const MU_SUFFIX(mu_surface) * surface, const MU_REAL wo[3], const MU_REAL transform[4],
                        MU_SUFFIX(mu_closure) * closure);
 /* Raises the slope roughness in every direction to at least alpha; a narrower lobe becomes GGX. */
 void MU_SUFFIX(mu_blur)(MU_SUFFIX(mu_closure) * closure, MU_REAL alpha);
 
-/* Zero where wi is below the horizon, and for a mirror. Never negative, never NaN; saturates at the largest
+/* Zero on the horizon, on the other side if nothing is transmitted, and for a mirror. Never negative, never NaN; saturates at the largest
  * number. */
 void MU_SUFFIX(mu_eval)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wi[3],
                         MU_SUFFIX(mu_value) * out);

@@ -11,6 +11,11 @@
  * - 6: det M without its absolute value, Eq. (22)
  * - 7: M m for M^T m, Eq. (13)
  * - 8: sampling weight without 1/G1
+ * - 9: refraction's eta² on radiance in place of importance
+ * - 10: the tilt with its sign changed
+ * - 11: the azimuth of direction-correlated shadowing between v and l, not M^-1 v and M^-1 l
+ * - 12: the visible part of a tilted surface's Lambda below 0 not clamped in G2
+ * - 13: F left out of the pdf of a surface that transmits
  */
 #ifndef MU_MUTANT_H
 #define MU_MUTANT_H

@@ -44,4 +44,22 @@ static inline real random_next(random_stream *stream) {
     return R(random_mix(stream->state) >> (64 - MU_REAL_BITS)) / R(1ull << (MU_REAL_BITS - 1)) / 2;
 }
 
+/* A standard normal deviate (Box & Muller 1958). */
+static inline real random_normal(random_stream *stream) {
+    const real u = 1 - random_next(stream);
+    return sqrt(-2 * log(u)) * cos(R(6.28318530717958647692) * random_next(stream));
+}
+
+/* The logarithm of a gamma deviate of this shape > 0 (Marsaglia & Tsang 2000). */
+static inline real random_log_gamma(random_stream *stream, real shape) {
+    const real boost = shape < 1 ? log(1 - random_next(stream)) / shape : 0;
+    const real d = (shape < 1 ? shape + 1 : shape) - R(1) / 3, c = 1 / sqrt(9 * d);
+    for (int k = 0; k < 64; k++) { /* each accepts 0.95 and more */
+        const real x = random_normal(stream), ln_v = 3 * log1p(larger(c * x, -1 + REAL_MIN));
+        if (c * x > -1 && log(1 - random_next(stream)) < x * x / 2 - d * expm1(ln_v) + d * ln_v)
+            return log(d) + ln_v + boost;
+    }
+    return log(d) + boost;
+}
+
 #endif

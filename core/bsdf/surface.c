@@ -3,35 +3,57 @@
 /* surface.c: the table of distributions, and what musurf.h offers over it. */
 #include "core/bsdf/distribution.h"
 
-extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr);
+extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr), MU(mu_kernel_std),
+    MU(mu_kernel_sheen);
 
-/* One row per mu_ndf. */
+/* One row per mu_ndf; what has none comes down to another, see choose(). */
 static const kernel *const kernels[MU_NDF_COUNT] = {
-    [MU_GGX] = &MU(mu_kernel_ggx),
-    [MU_BECKMANN] = &MU(mu_kernel_beckmann),
-    [MU_GTR] = &MU(mu_kernel_gtr),
+    [MU_GGX] = &MU(mu_kernel_ggx), [MU_BECKMANN] = &MU(mu_kernel_beckmann), [MU_GTR] = &MU(mu_kernel_gtr),
+    [MU_STD] = &MU(mu_kernel_std), [MU_SHEEN] = &MU(mu_kernel_sheen),
 };
 
-/* What a definition comes down to: GTR is GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma =
- * 0. */
+/* The distribution that a definition comes down to, with its own alpha and gamma. */
 typedef struct plan {
     const kernel *kernel;
-    double alpha, gamma;
+    mu_definition definition;
     const char *name;
 } plan;
 
+static plan as(const mu_definition *d, mu_ndf ndf, double alpha, double gamma, const char *name) {
+    plan p = {kernels[ndf], *d, name ? name : kernels[ndf]->name};
+    p.definition.ndf = ndf, p.definition.alpha = alpha, p.definition.gamma = gamma;
+    return p;
+}
+
+/* Student-t: 2 is GGX, and beyond 1e17 no double tells it from Beckmann. */
+static plan choose_std(const mu_definition *d, double alpha, double gamma) {
+    if (gamma == 2) return as(d, MU_GGX, alpha, 2, "ggx (std is ggx here)");
+    if (gamma > 1e17) return as(d, MU_BECKMANN, alpha, 2, "beckmann (std is beckmann here)");
+    return as(d, MU_STD, alpha, gamma, MU_REAL_BITS == 24 ? "std table" : "std quadrature");
+}
+
 static plan choose(const mu_definition *d) {
-    if (d->alpha == 0) return (plan){NULL, 0, 0, "mirror"};
-    if (d->ndf == MU_GTR) {
-        if (d->gamma == 2 || d->alpha == 1)
-            return (plan){kernels[MU_GGX], d->alpha, 2, "ggx (gtr is ggx here)"};
+    if (d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG)) return (plan){NULL, *d, "mirror"};
+    switch (d->ndf) {
+    case MU_GTR: /* GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma = 0 */
+        if (d->gamma == 2 || d->alpha == 1) return as(d, MU_GGX, d->alpha, 2, "ggx (gtr is ggx here)");
         /* D differs from gamma = 0 by less than the last place of a double */
-        if (d->gamma * (1 - 2 * log(d->alpha)) < 1e-17)
-            return (plan){kernels[MU_GGX], 1, 2, "ggx (gtr is ggx here)"};
-        return (plan){kernels[MU_GTR], d->alpha, d->gamma,
-                      MU_REAL_BITS == 24 ? "gtr table" : "gtr quadrature"};
+        if (d->gamma * (1 - 2 * log(d->alpha)) < 1e-17) return as(d, MU_GGX, 1, 2, "ggx (gtr is ggx here)");
+        return as(d, MU_GTR, d->alpha, d->gamma, MU_REAL_BITS == 24 ? "gtr table" : "gtr quadrature");
+    case MU_STD:
+        return choose_std(d, d->alpha, d->gamma);
+    case MU_PHONG: /* Student-t of b = (gamma - 1) alpha² = 1 */
+        return choose_std(d, sqrt(2 / (d->exponent + 2)), d->exponent / 2 + 2);
+    default:
+        return as(d, d->ndf, d->alpha, d->gamma,
+                  d->ndf == MU_SHEEN ? MU_REAL_BITS == 24 ? "sheen table" : "sheen quadrature" : NULL);
     }
-    return (plan){kernels[d->ndf], d->alpha, d->gamma, kernels[d->ndf]->name};
+}
+
+/* Does it need what only the full plan has? */
+static int needs_full(const mu_definition *d) {
+    return d->tilt[0] != 0 || d->tilt[1] != 0 || d->transmission || d->masking != MU_HEIGHT_CORRELATED ||
+           d->sampler >= MU_SAMPLE_MIXED;
 }
 
 static size_t header_bytes(void) {
@@ -40,7 +62,7 @@ static size_t header_bytes(void) {
 
 size_t MU(mu_surface_bytes)(const mu_definition *definition) {
     const plan p = choose(definition);
-    return header_bytes() + (p.kernel ? p.kernel->table_bytes(p.alpha, p.gamma) : 0);
+    return header_bytes() + (p.kernel ? p.kernel->table_bytes(&p.definition) : 0);
 }
 
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
@@ -49,8 +71,12 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     *s = (surface){.kernel = p.kernel,
                    .general = p.kernel,
                    .sampler = d->sampler,
-                   .alpha = R(p.alpha),
+                   .masking = d->masking,
+                   .transmission = d->transmission,
+                   .alpha = R(p.kernel ? p.definition.alpha : 0),
+                   .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
                    .unit = 1,
+                   .tilt = {d->tilt[0], d->tilt[1]},
                    .name = p.name};
     s->fresnel.kind = d->fresnel;
     for (int i = 0; i < 3; i++) {
@@ -60,15 +86,16 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                                                            : d->dielectric);
         s->fresnel.b[i] = R(d->k[i]);
     }
-    if (p.kernel) {
-        s->table_bytes = p.kernel->table_bytes(p.alpha, p.gamma);
-        s->unit = p.kernel->prepare(&s->base, p.alpha, p.gamma, (char *)memory + header_bytes());
-    }
-    /* The distributions are isotropic: what turns or mirrors alone leaves them as they are. */
+    if (!p.kernel) return s;
+    s->table_bytes = p.kernel->table_bytes(&p.definition);
+    s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + header_bytes());
+    if (needs_full(d)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
-    const int is_uniform = p.kernel && scale <= DBL_MAX && mu_transform_is_similarity(d->transform);
-    if (is_uniform) s->kernel = p.kernel->uniform;
-    MU(map_make)(&s->map, is_uniform ? uniform : d->transform, s->unit);
+    const int is_uniform = s->kernel == p.kernel && !(p.kernel->traits & ANISOTROPIC) && scale <= DBL_MAX &&
+                           mu_transform_is_similarity(d->transform);
+    if (is_uniform) s->kernel = p.kernel->plans[PLAN_UNIFORM];
+    MU(map_make)(&s->map, is_uniform ? uniform : d->transform, d->tilt, s->unit);
     return s;
 }
 
@@ -84,31 +111,40 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->kernel = s->kernel;
     c->alpha = s->alpha;
     c->map = s->map;
+    c->importance = 0;
     if (transform) {
         const double m[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
                              (double)transform[3]};
-        if (!MU(map_make)(&c->map, m, s->unit)) return 0;
+        if (!MU(map_make)(&c->map, m, s->tilt, s->unit)) return 0;
         c->kernel = s->general;
     }
-    for (int i = 0; i < 3; i++) c->wo[i] = wo[i];
-    c->sigma = !(wo[2] >= 0) ? 0 : c->kernel ? c->kernel->sigma(c, wo) : wo[2];
-    return wo[2] > 0;
+    c->side = s->transmission && wo[2] < 0 ? R(-1) : R(1);
+    c->eta = c->side < 0 ? 1 / s->fresnel.a[0] : s->fresnel.a[0]; /* of a dielectric */
+    for (int i = 0; i < 3; i++) c->wo[i] = c->side * wo[i];
+    c->sigma = c->lambda = 0;
+    if (c->kernel && c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
+    return c->wo[2] > 0;
 }
 
 void MU(mu_blur)(closure *c, real alpha) {
     if (!(alpha > 0)) return;
+    const surface *s = c->surface;
     if (!c->kernel) { /* a mirror takes the roughness alone: M times nothing is nothing */
-        const double identity[4] = {1, 0, 0, 1};
-        MU(map_make)(&c->map, identity, (double)alpha);
+        const double identity[4] = {1, 0, 0, 1}, level[2] = {0, 0};
+        MU(map_make)(&c->map, identity, level, (double)alpha);
+        c->kernel = kernels[MU_GGX];
+        if (s->transmission || s->masking != MU_HEIGHT_CORRELATED) c->kernel = c->kernel->plans[PLAN_FULL];
     } else {
         /* gtr of gamma < 1 is measured in slopes of 1, but alpha is what there is of a lobe */
-        const surface *s = c->surface;
-        const double roughness = c->kernel == kernels[MU_GGX] ? 1 : fmin(1, (double)s->alpha / s->unit);
+        const kernel *const ggx = kernels[MU_GGX];
+        const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR],
+                  full = c->kernel == c->kernel->plans[PLAN_FULL];
+        const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;
         if (!MU(map_widen)(&c->map, roughness, (double)alpha)) return;
+        c->kernel = full ? ggx->plans[PLAN_FULL] : ggx;
     }
-    c->kernel = kernels[MU_GGX];
     c->alpha = larger(c->alpha, alpha);
-    c->sigma = c->kernel->sigma(c, c->wo);
+    c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
 }
 
 void MU(mu_eval)(const closure *c, const real wi[3], value *out) {
@@ -119,17 +155,11 @@ void MU(mu_eval)(const closure *c, const real wi[3], value *out) {
     }
 }
 
-static void sample_mirror(const closure *c, sample *out) {
-    *out = (sample){.delta = 1, .pdf = 1, .pdf_reverse = 1, .wm = {0, 0, 1}};
-    out->wi[0] = -c->wo[0], out->wi[1] = -c->wo[1], out->wi[2] = c->wo[2];
-    MU(fresnel_eval)(&c->surface->fresnel, c->wo[2], out->weight);
-}
-
 void MU(mu_sample_with)(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
     if (c->kernel) {
         c->kernel->sample(c, sampler, u, out);
     } else {
-        sample_mirror(c, out);
+        MU(mirror_sample)(c, u, out);
     }
 }
 

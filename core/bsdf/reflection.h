@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * reflection.h: f = F D G2 / (4 cos_o cos_i) with its two pdfs (part of transformed.h). i is the light's direction as
+ * seen from the side of wo: i.z > 0.
+ */
+
+/* h = wo + wi of unit vectors is normal to their difference. Rounding has left them a little too long or short, which
+ * turns a short h, of grazing forward scattering; |wo - wi| is 2 there. Not in the paper. Returns |h|². */
+static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
+    const real apart[3] = {wo[0] - wi[0], wo[1] - wi[1], wo[2] - wi[2]};
+    const real off = (h[0] * apart[0] + h[1] * apart[1] + h[2] * apart[2]) / (4 - h2);
+    for (int k = 0; k < 3; k++) h[k] -= off * apart[k];
+    return h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+}
+
+/* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand. */
+static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
+                                  real over_cos_oh, real sigma_i, real choice, real *pdf, real *reverse) {
+    const real scale = c->map.view_z;
+    if (MUTANT(5, 1, sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)) {
+        *pdf = *reverse = smaller(quarter_d * smaller(over_cos_oh, saturated) * choice, saturated);
+    } else {
+        *pdf = smaller(quarter_d * (scale / larger(c->sigma, REAL_MIN)) * choice, saturated);
+        *reverse = smaller(quarter_d * (scale / larger(sigma_i, REAL_MIN)) * choice, saturated);
+    }
+    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) { /* Appendix B: the balance heuristic */
+        const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
+        *pdf = (1 - share) * *pdf + uniform;
+        *reverse = (1 - share) * *reverse + uniform;
+    }
+}
+
+static inline void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, const real i[3],
+                                   value *out) {
+    *out = (value){0};
+    if (!(i[2] > 0)) return;
+    real h[3] = {c->wo[0] + i[0], c->wo[1] + i[1], c->wo[2] + i[2]};
+    real h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    if (h2 < R(0.25)) h2 = sharpen(c->wo, i, h, h2);
+    const real sum2 = h2;
+    for (int k = 0; h2 < R(1e-24) && k < 32; k++) { /* i = -wo but for rounding: h² must not underflow */
+        for (int j = 0; j < 3; j++) h[j] *= R(0x1p60);
+        h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    }
+    const real quarter_d = transformed_density(plan, c, h, h2) / 4;
+    real sigma_i, lambda_i;
+    view_of(plan, c, i, &sigma_i, &lambda_i);
+    const real scale = c->map.view_z;
+    const real f =
+        smaller(quarter_d * smaller(scale / larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN),
+                                    saturated),
+                saturated);
+    real F[3];
+    fresnel_of(c, sqrt(sum2) / 2, F); /* wo.wm = |h| / 2 */
+    for (int k = 0; k < 3; k++) out->f[k] = F[k] * f;
+    const real choice = plan == PLAN_FULL && c->surface->transmission ? MUTANT(13, 1, F[0]) : 1;
+    reflection_pdf(plan, c, sampler, quarter_d, h[2] / (sqrt(h2) * sqrt(sum2) / 2), sigma_i, choice,
+                   &out->pdf, &out->pdf_reverse);
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * refraction.h: transmission through the microsurface of a dielectric (part of transformed.h). Walter et al. 2007 Eq. (21);
+ * seed 003, Sections 4 to 14; seed 001, Eq. (7). Exact under any map and with tilt.
+ *
+ * The light comes from the other side. Everything is said of i = -wi, turned over to the side of wo (a microsurface seen
+ * from below shows the same slopes as its point reflection: sigma and G2 are those of i). With eta = n_i / n_o and the
+ * unnormalised half-vector H = +-(eta i - wo), which is normal to the facet that refracts one into the other,
+ *     f = (wo.H)(i.H) (1 - F) G2 D(H) / (cos_o cos_i |H|^4),      radiance;  eta² times that is importance
+ *     pdf = D(H) (1 - F) (wo.H)(i.H) eta² / (sigma_o |H|^4),      pdf_reverse = D(H) (1 - F) (wo.H)(i.H) / (sigma_i |H|^4)
+ * so that f(wo,wi) / n_o² is symmetric (seed 003 Eq. 4c): (wo.h - eta i.h)², which stands in the textbook, is |H|².
+ */
+
+/* H, and |H|² without the cancellation of eta near 1; 0 if no facet refracts wo into -i. */
+static inline real refraction_half(const closure *c, const real i[3], real H[3]) {
+    const real eta = c->eta, sign = eta > 1 ? R(1) : R(-1);
+    real apart2 = 0, facing_o = 0, facing_i = 0;
+    for (int k = 0; k < 3; k++) {
+        const real apart = i[k] - c->wo[k];
+        apart2 += apart * apart;
+        H[k] = sign * ((eta - 1) * i[k] + apart);
+        facing_o += H[k] * c->wo[k], facing_i += H[k] * i[k];
+    }
+    if (!(H[2] > 0 && facing_o > 0 && facing_i > 0)) return 0;
+    return square(eta - 1) + eta * apart2;
+}
+
+/* (wo.H)(i.H) D / |H|^4 times 1 - F, which `reflected` receives as F. */
+static inline real refraction_density(const closure *c, const real i[3], const real H[3], real H2, real F) {
+    const real facing_o = H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2],
+               facing_i = H[0] * i[0] + H[1] * i[1] + H[2] * i[2];
+    const real d = transformed_density(PLAN_FULL, c, H, H2);
+    return smaller(d * (facing_o / H2) * (facing_i / H2) * (1 - F), saturated);
+}
+
+static inline void refraction_fill(const closure *c, const real i[3], real d, real f[3], real *pdf,
+                                   real *reverse) {
+    real sigma_i, lambda_i;
+    view_of(PLAN_FULL, c, i, &sigma_i, &lambda_i);
+    const real scale = c->map.view_z, eta2 = square(c->eta);
+    const real radiance =
+        d * smaller(scale / larger(unshadowed(PLAN_FULL, c, i, sigma_i, lambda_i, 1), REAL_MIN), saturated);
+    f[0] = f[1] = f[2] = smaller(radiance * (MUTANT(9, !c->importance, c->importance) ? eta2 : 1), saturated);
+    *pdf = smaller(d * eta2 * (scale / larger(c->sigma, REAL_MIN)), saturated);
+    *reverse = smaller(d * (scale / larger(sigma_i, REAL_MIN)), saturated);
+}
+
+static inline void refraction_eval(const closure *c, const real i[3], value *out) {
+    *out = (value){0};
+    real H[3];
+    const real H2 = c->eta == 1 ? 0 : refraction_half(c, i, H);
+    if (!(H2 > 0)) return;
+    const real facing = (H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2]) / sqrt(H2);
+    const real d = refraction_density(c, i, H, H2, MU(fresnel_dielectric)(c->eta, smaller(facing, 1)));
+    refraction_fill(c, i, d, out->f, &out->pdf, &out->pdf_reverse);
+}
+
+/* The direction that micronormal m (unit, seen at the cosine `facing` > 0) refracts wo into, turned over to the side of
+ * wo. Returns H.m = eta i.m - wo.m; i.z = 0 in total reflection. */
+static inline real refract(const closure *c, const real m[3], real facing, real i[3]) {
+    const real eta = c->eta, inside = square(eta) - (1 - facing) * (1 + facing);
+    if (!(inside > 0)) {
+        i[0] = i[1] = i[2] = 0;
+        return 0;
+    }
+    /* eta i = wo + (sqrt(eta² - sin²) - cos) m, the difference without its cancellation */
+    const real along = (eta - 1) * (eta + 1) / (sqrt(inside) + facing);
+    real length2 = 0;
+    for (int k = 0; k < 3; k++) i[k] = (c->wo[k] + along * m[k]) / eta, length2 += i[k] * i[k];
+    for (int k = 0; k < 3; k++) i[k] /= sqrt(length2);
+    return along;
+}
+
+/* wo refracted through the sampled micronormal, whose density is d and for which F says how much is reflected. */
+static inline void refraction_sample(const closure *c, const real m[3], real facing, real d, real F,
+                                     sample *out) {
+    real i[3];
+    const real along = refract(c, m, facing, i);
+    if (!(i[2] > 0)) return;
+    const real eta = c->eta;
+    for (int k = 0; k < 3; k++) out->wi[k] = -c->side * i[k];
+    real sigma_i, lambda_i;
+    view_of(PLAN_FULL, c, i, &sigma_i, &lambda_i);
+    const real ratio =
+        smaller(i[2] * c->sigma / larger(unshadowed(PLAN_FULL, c, i, sigma_i, lambda_i, 1), REAL_MIN), 1);
+    const real weight = c->importance ? ratio : ratio / square(eta);
+    for (int k = 0; k < 3; k++)
+        out->weight[k] = weight; /* G2 / G1, over eta² for radiance; 1 - F was the choice */
+    out->transmitted = 1, out->rejected = 0, out->eta = eta;
+    if (eta == 1) { /* nothing is bent: a delta lobe that is masked */
+        out->delta = 1, out->pdf = out->pdf_reverse = 1 - F;
+        return;
+    }
+    const real facing_i = i[0] * m[0] + i[1] * m[1] + i[2] * m[2];
+    const real density_i =
+        smaller(d * facing * facing_i / larger(along * along, REAL_MIN) * (1 - F), saturated);
+    refraction_fill(c, i, density_i, out->f, &out->pdf, &out->pdf_reverse);
+}

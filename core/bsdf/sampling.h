@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * sampling.h: draws a micronormal of the transformed microsurface, and the direction it sends wo into (part of
+ * transformed.h).
+ */
+
+/* A micronormal: n in the distribution's own space; m in the surface's, of unit length. D_M comes from n itself, not from
+ * M^T m: exact however near to singular M is. 0 if there is none. */
+static inline int draw_normal(plan_kind plan, const closure *c, int visible, const real u[3], real m[3],
+                              real *d) {
+    real n[3];
+    if (visible) {
+        real w[3];
+        map_view(plan, &c->map, c->wo, w);
+        sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
+    } else {
+        sample_slope(&c->surface->base, u, n); /* Eq. (25) */
+    }
+    map_normal_back(plan, &c->map, n, m); /* Eq. (26) */
+    const real length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    if (!(length > 0)) return 0;
+    for (int k = 0; k < 3; k++) m[k] /= length;
+    const real stretch = length / (c->map.view_z * c->map.normal_z);
+    *d = smaller(density(&c->surface->base, n, stretch * stretch), saturated);
+    return 1;
+}
+
+static inline void reflection_sample(plan_kind plan, const closure *c, mu_sampler sampler, const real m[3],
+                                     real cosine, real d, const real F[3], sample *out) {
+    real i[3];
+    for (int k = 0; k < 3; k++) i[k] = 2 * cosine * m[k] - c->wo[k];
+    if (!(i[2] > 0)) return;
+    const real unit = R(1) / sqrt(i[0] * i[0] + i[1] * i[1] + i[2] * i[2]);
+    for (int k = 0; k < 3; k++) i[k] *= unit, out->wi[k] = plan == PLAN_FULL ? c->side * i[k] : i[k];
+
+    real sigma_i, lambda_i;
+    view_of(plan, c, i, &sigma_i, &lambda_i);
+    const real scale = c->map.view_z, open = larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN);
+    const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, c->sigma), 1);
+    const real f = smaller(d / 4 * smaller(scale / open, saturated), saturated);
+    const real choice = plan == PLAN_FULL && c->surface->transmission ? F[0] : 1;
+    reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, sigma_i, choice, &out->pdf, &out->pdf_reverse);
+    real weight = ratio; /* F G2 / G1 */
+    if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
+        weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
+    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) { /* its own density over that of the mixture */
+        const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
+        weight *= larger(out->pdf - uniform, 0) / larger(out->pdf, REAL_MIN) / (1 - share);
+    }
+    for (int k = 0; k < 3; k++) {
+        out->f[k] = F[k] * f;
+        out->weight[k] = choice < 1 ? weight : F[k] * weight; /* F was the choice */
+    }
+    out->rejected = 0;
+}
+
+/* A direction of the uniform hemisphere, for the samplers that mix it in. */
+static inline void uniform_sample(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
+    const real z = 1 - u[0], r = sqrt(u[0] * (2 - u[0])), phi = R(2 * PI) * u[1];
+    const real i[3] = {r * cos(phi), r * sin(phi), z};
+    value v;
+    real m[3], length2 = 0;
+    for (int k = 0; k < 3; k++) m[k] = c->wo[k] + i[k], length2 += m[k] * m[k];
+    reflection_eval(PLAN_FULL, c, sampler, i, &v);
+    for (int k = 0; k < 3; k++) {
+        out->wi[k] = i[k], out->wm[k] = m[k] / sqrt(length2);
+        out->f[k] = v.f[k], out->weight[k] = smaller(v.f[k] * (i[2] / v.pdf), saturated);
+    }
+    out->pdf = v.pdf, out->pdf_reverse = v.pdf_reverse, out->rejected = 0;
+}
+
+static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sampler, const real u[3],
+                             sample *out) {
+    *out = (sample){.rejected = 1, .eta = 1};
+    real moved[3] = {u[0], u[1], u[2]}, m[3], d;
+    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) {
+        const real share = c->surface->uniform_share;
+        if (u[2] < share) {
+            uniform_sample(c, sampler, u, out);
+            return;
+        }
+        moved[2] = (u[2] - share) / (1 - share);
+    }
+    const int visible = sampler == MU_SAMPLE_VISIBLE || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
+    if (!draw_normal(plan, c, visible, moved, m, &d)) return;
+    for (int k = 0; k < 3; k++) out->wm[k] = plan == PLAN_FULL ? c->side * m[k] : m[k];
+    const real cosine = m[0] * c->wo[0] + m[1] * c->wo[1] + m[2] * c->wo[2];
+    if (!(cosine > 0)) return;
+    real F[3];
+    fresnel_of(c, cosine, F);
+    if (plan == PLAN_FULL && c->surface->transmission) {
+        real choice = moved[2];
+        if (TRAITS & PICKS) { /* u[2] is spent: another number */
+            random_stream more = random_start(u);
+            more.state ^= 0x5bf0363546a83dull;
+            choice = random_next(&more);
+        }
+        if (choice >= F[0]) {
+            refraction_sample(c, m, cosine, d, F[0], out);
+            return;
+        }
+    }
+    reflection_sample(plan, c, sampler, m, cosine, d, F, out);
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * std.c: the Student-t distribution (Ribardiere et al. 2017) of every tail gamma > 3/2, shape-invariant: slopes in units of
+ * alpha. P22 = (1 + X/b)^-gamma / pi with b = gamma - 1 and X the squared slope; Phong (n) is that of b alpha² = 1, gamma =
+ * n/2 + 2.
+ */
+#include "core/bsdf/cap.h"
+#include "core/bsdf/parts.h"
+#include "core/bsdf/smith.h"
+#include "core/bsdf/std.h"
+
+static inline real density(const base *b, const real u[3], real n2) {
+    const real *s = b->shape;
+    const real r2 = flat_square(u) / s[STD_B], z2 = larger(u[2] * u[2], REAL_MIN), t = n2 / (z2 + r2);
+    return smaller(R(INV_PI) * t * t * exp((2 - s[STD_GAMMA]) * log1p(r2 / z2)), REAL_MAX);
+}
+
+/* z Lambda = H r J(T), J = int_0^1 (1 + 1/(u T)²)^-p du, T² = b r² / z², p = gamma - 3/2; H: sigma at the horizon */
+static inline real z_lambda(const base *b, const real w[3]) {
+    const real *s = b->shape;
+    const real r2 = flat_square(w), r = sqrt(r2);
+#if MU_REAL_BITS == 53
+    return s[STD_HORIZON] * r * mu_std_integral(s[STD_P], r * sqrt(s[STD_B]), w[2]);
+#else
+    const float sum = larger(sqrtf(w[2] * w[2] + r2) + w[2], REAL_MIN), v = r2 / sum / sum;
+    const float power = expf(-s[STD_P] * log1pf(w[2] * w[2] / larger(s[STD_B] * r2, REAL_MIN)));
+    return s[STD_HORIZON] * r * power * smith_table_at(b->table, (int32_t)s[STD_OCTAVES], s[STD_TO_FIRST], v);
+#endif
+}
+
+/* The slope's length under D cos: X/b = (1 - u)^(-1/b) - 1. */
+static void plain(const base *b, real u, real part[2]) {
+    const real ln = -log1p(-u) / b->shape[STD_B];
+    part[0] = sqrt(b->shape[STD_B] * -expm1(-ln));
+    part[1] = exp(-ln / 2);
+}
+
+/* The same times the length: X/b is a quotient of gamma deviates of shapes 3/2 and p. */
+static void by_length(const base *b, random_stream *more, real part[2]) {
+    const real most = MU_REAL_BITS == 24 ? 40 : 300;
+    const real ln = (random_log_gamma(more, R(1.5)) - random_log_gamma(more, b->shape[STD_P])) / 2;
+    part_from_log(smaller(ln, most) + log(b->shape[STD_B]) / 2, part);
+}
+
+static inline void sample_slope(const base *b, const real u[3], real n[3]) {
+    real part[2];
+    plain(b, u[0], part);
+    slope_normal(part[0], part[1], u[1], n);
+}
+
+/* gamma >= 2: GGX of the same peak proposes, (1 + X)² (1 + X/b)^-gamma / bound accepts: at least 0.38. */
+static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
+    const real *s = b->shape;
+    if (s[STD_GAMMA] < 2) {
+        const parts p = {s[STD_HORIZON], plain, by_length};
+        visible_by_parts(&p, b, w, u, n);
+        return;
+    }
+    random_stream more = random_start(u);
+    real u0 = u[0], u1 = u[1], accept = u[2];
+    for (int i = 0; i < 128; i++) {
+        cap_visible(w, 1, u0, u1, n);
+        if (accept * s[STD_BOUND] < density(b, n, n[0] * n[0] + n[1] * n[1] + n[2] * n[2])) return;
+        u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
+    }
+}
+
+static int octaves(double gamma) {
+    return mu_smith_octaves(1 / sqrt(fmax(1, gamma - 1)));
+}
+
+static size_t table_bytes(const mu_definition *d) {
+    return MU_REAL_BITS == 53 ? 0 : mu_smith_table_bytes(octaves(d->gamma));
+}
+
+static double prepare(base *b, const mu_definition *d, void *table) {
+    const double gamma = d->gamma;
+    real *s = b->shape;
+    s[STD_GAMMA] = R(gamma);
+    s[STD_B] = R(gamma - 1);
+    s[STD_P] = R(gamma - 1.5);
+    s[STD_HORIZON] = R(mu_std_horizon(gamma));
+    /* largest at X = 1: 4 (1 - 1/gamma)^gamma, and room for rounding */
+    s[STD_BOUND] = R(4 * INV_PI * exp(gamma * log1p(-1 / gamma)) *
+                     (1 + 16 * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON)));
+    b->table = NULL;
+    if (MU_REAL_BITS == 24) {
+        s[STD_OCTAVES] = R(octaves(gamma));
+        s[STD_TO_FIRST] = R(ldexp(1, octaves(gamma)));
+        mu_std_table_build(table, octaves(gamma), gamma);
+        b->table = table;
+    }
+    return d->alpha;
+}
+
+enum { TRAITS = PICKS };
+
+#define DISTRIBUTION std
+#include "core/bsdf/transformed.h"

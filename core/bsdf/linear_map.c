@@ -10,6 +10,7 @@
  */
 #include "core/bsdf/linear_map.h"
 
+#include "core/bsdf/singular.h"
 #include <stdint.h>
 #include <string.h>
 
@@ -40,12 +41,6 @@ static double power_of_two(int e) {
 /* Exact but for a result that is subnormal; 0 or infinite beyond. */
 static double scaled(double x, int e) {
     return x * power_of_two(e / 2) * power_of_two(e - e / 2);
-}
-
-/* a d - b c to within 1.5 units in the last place, however much cancels (Kahan). */
-static double product_difference(double a, double d, double b, double c) {
-    const double bc = b * c;
-    return fma(a, d, -bc) + fma(-b, c, bc);
 }
 
 static double clamp(double x, double low, double high) {
@@ -106,18 +101,16 @@ int MU(map_make)(map *out, const double m[4], const double tilt[2], double unit)
 }
 
 int MU(map_widen)(map *m, double base, double alpha) {
-    /* V = base s M^-1 = rotation diag(large, small) rotation, by sums and differences of its entries; small < 0
-     * for a mirror */
+    /* V = base s M^-1: its singular values are the slope roughnesses */
     const double z = (double)m->view_z / base;
-    const double a = (double)m->view[0] / z, b = (double)m->view[1] / z, c = (double)m->view[2] / z,
-                 d = (double)m->view[3] / z;
-    const double e = (a + d) / 2, f = (a - d) / 2, g = (c + b) / 2, h = (c - b) / 2;
-    const double q = hypot(e, h), r = hypot(f, g), large = q + r, small = q - r;
-    if (fabs(small) >= alpha) return 0;
-    const double sum = atan2(h, e), difference = atan2(g, f);
-    const double wide = fmax(large, alpha), narrow = copysign(alpha, small);
+    const double rows[4] = {(double)m->view[0] / z, (double)m->view[1] / z, (double)m->view[2] / z,
+                            (double)m->view[3] / z};
+    const singular v = singular_of(rows);
+    if (fabs(v.small) >= alpha) return 0;
+    const double wide = fmax(v.large, alpha), narrow = copysign(alpha, v.small);
     const double q2 = (wide + narrow) / 2, r2 = (wide - narrow) / 2;
-    const double e2 = q2 * cos(sum), h2 = q2 * sin(sum), f2 = r2 * cos(difference), g2 = r2 * sin(difference);
+    const double e2 = q2 * cos(v.sum), h2 = q2 * sin(v.sum);
+    const double f2 = r2 * cos(v.difference), g2 = r2 * sin(v.difference);
     const double det = wide * narrow;
     const double inverse[4] = {(e2 - f2) / det, -(g2 - h2) / det, -(g2 + h2) / det, (e2 + f2) / det};
     /* the tilt acts before M: t V has to stay as M changes to V'^-1 */

@@ -105,6 +105,65 @@ int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]);
 /* A = S R, seed 001 Eq. (2) and (3): roughness along the axes, then rotations in radians. */
 void mu_ellipsoid_matrix(const double alpha[2], const double theta[3], double A[9]);
 
+/* Anisotropy of others: from another system's parameters to the M under which GGX (and Beckmann) of slope roughness
+ * `alpha` is exactly that system's anisotropic distribution. alpha = roughness^2 in all of them. Where no alpha is
+ * asked for, M is the same for every alpha.
+ *   Axes: +x the tangent (Disney's X, Cycles' T, the tangent of OpenPBR and glTF), +y the bitangent n x t.
+ * `rotation` turns them counter-clockwise about +z, in radians, any finite number: the tangent points to (cos, sin)
+ * then.
+ *   A highlight is elongated along the axis of larger slope roughness; the grooves that cause it run across.
+ *   Each returns 1 if its parameters are in range; otherwise 0, and m is not to be used. */
+
+/* Slope roughness along the axes: M = R diag(alpha/alpha_x, alpha/alpha_y) R^T, Eq. (29) and a rotation R. Positive
+ * and finite, or all three 0 (a mirror). Highlight along x where alpha_x > alpha_y. */
+int mu_transform_alphas(double alpha, double alpha_x, double alpha_y, double rotation, double m[4]);
+
+/* s of Eq. (31), in (-1, 1): s > 0 stretches the microsurface 1/(1-s) times along x and squeezes it as much along
+ * y, alpha_x = alpha (1-s), alpha_y = alpha/(1-s); s < 0 the other way round. Highlight along y for s > 0. The
+ * paper turns the frame instead: rotation 0. (The s = 5/2 of its Figure 8 is outside its own range.) */
+int mu_transform_stretch(double s, double rotation, double m[4]);
+
+/* `anisotropic` in [0, 1] of Burley 2012, "Physically-Based Shading at Disney", addenda, and BRDF Explorer's
+ * disney.brdf: aspect = sqrt(1 - 0.9 anisotropic), alpha_x = alpha/aspect, alpha_y = alpha aspect. Highlight along
+ * x. (disney.brdf keeps both from falling below 0.001; here they may.)
+ *   Blender's Principled BSDF is the same (4.3, Cycles' kernel/svm/closure.h, CLOSURE_BSDF_PRINCIPLED_ID): rotation
+ * = 2 pi times its Anisotropic Rotation. */
+int mu_transform_disney(double anisotropic, double rotation, double m[4]);
+
+/* Anisotropy in [-1, 1] of Cycles' Anisotropic BSDF, since Blender 4.0 the Glossy BSDF (4.3, kernel/svm/closure.h,
+ * CLOSURE_BSDF_MICROFACET_GGX_ID): clamped to [-0.99, 0.99] as there; then alpha_x = alpha (1-a), alpha_y =
+ * alpha/(1-a) for a >= 0, alpha_x = alpha/(1+a), alpha_y = alpha (1+a) for a < 0, which is Eq. (31) with s = a.
+ * Highlight ACROSS the tangent, along y, for a > 0: opposite to Principled. rotation = 2 pi times its Rotation.
+ * (Cycles takes |a| <= 1e-4 for 0; this does not.) */
+int mu_transform_cycles(double anisotropy, double rotation, double m[4]);
+
+/* specular_roughness_anisotropy (or coat_roughness_anisotropy) a in [0, 1) of OpenPBR 1.1, "Microfacet model":
+ * alpha_x = alpha sqrt(2/(1 + (1-a)^2)), alpha_y = (1-a) alpha_x, so that alpha_x^2 + alpha_y^2 = 2 alpha^2.
+ * Highlight along x; `rotation` is that of geometry_tangent. OpenPBR allows a = 1, where alpha_y = 0: no M does
+ * that. */
+int mu_transform_openpbr(double anisotropy, double rotation, double m[4]);
+
+/* anisotropyStrength in [0, 1] and anisotropyRotation of glTF 2.0's KHR_materials_anisotropy (ratified),
+ * "Anisotropy": alpha_x = mix(alpha, 1, strength^2), alpha_y = alpha, in (0, 1] (or 0 with strength 0). Highlight
+ * along x. Where a texture says (r, g, b), `strength` is that times b and `rotation` that plus atan2(2g-1, 2r-1). */
+int mu_transform_gltf(double alpha, double strength, double rotation, double m[4]);
+
+/* The covariance [xx xy; xy yy], symmetric and positive definite, of the slopes (dz/dx, dz/dy): Sigma of Cocco et
+ * al. 2024, "Anisotropic specular image-based lighting based on BRDF major axis sampling", section 4.1, with its
+ * sigma = alpha/sqrt(2): Sigma = alpha^2/2 (M M^T)^-1, alpha > 0, M symmetric. The true covariance for Beckmann; a
+ * way to write alpha^2/2 for GGX, whose own is infinite. Highlight along the eigenvector of the larger eigenvalue.
+ * Squares cost digits: Sigma of condition k knows its smaller eigenvalue to no more than k units in the last place. */
+int mu_transform_covariance(double alpha, double xx, double xy, double yy, double rotation, double m[4]);
+
+/* And back: the slope roughnesses of a surface of isotropic roughness alpha under M, by singular value
+ * decomposition. A rotation or a mirror on the right of M moves no isotropic surface and is dropped. Always alpha_x
+ * >= alpha_y (highlight along x), rotation in (-pi/2, pi/2], and 0 where M is isotropic to within rounding.
+ * mu_transform_alphas takes the result to an M' with M' M'^T = M M^T. 0 if M is singular or not finite. */
+typedef struct mu_anisotropy {
+    double alpha_x, alpha_y, rotation;
+} mu_anisotropy;
+int mu_transform_anisotropy(const double transform[4], double alpha, mu_anisotropy *out);
+
 /* n and k of a metal at three wavelengths, by chemical symbol; 0 if it is not known. The names,
  * NULL-terminated. */
 int mu_metal(const char *symbol, double n[3], double k[3]);

@@ -18,8 +18,8 @@ struct musurf_material {
     void *context;
     const mu_surface_f *in_float; /* NULL where shading is in double */
     const mu_surface_d *in_double;
-    float stretch[2];
-    uint32_t lobe;
+    float inner[4]; /* of parsed.inner */
+    uint32_t lobes; /* that setup answers */
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
     char name[64];
@@ -33,6 +33,9 @@ typedef struct bound {
         mu_closure_d d;
     } closure;
 } bound;
+
+/* What sampler "auto" comes down to; `memory` holds a double surface of the definition. */
+mu_sampler musurf_choose_sampler(const mu_definition *definition, void *memory);
 
 extern const musurf_probe musurf_probe_table;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * musurf_material.c: the shared object's one type, "musurf.microfacet": microfacet reflection whose
+ * musurf_material.c: the shared object's one type, "musurf.microfacet": microfacet reflection and refraction whose
  * microsurface is linearly transformed. Compile, describe, release, and the table that a host receives.
  */
 #include <math.h>
@@ -13,14 +13,22 @@
 
 enum { ALIGNMENT = 64 };
 
+static int is_mirror(const mu_definition *d) {
+    return d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG);
+}
+
 /* Float shading holds slope widths down to here (a large gamma narrows gtr) and constant M up to this scale;
  * beyond, D overflows, or the table would. */
 static int float_suffices(const parsed *p) {
     const mu_definition *d = &p->definition;
-    const double width = d->ndf == MU_GTR ? d->alpha / sqrt(fmax(1, d->gamma)) : d->alpha;
+    const double width = d->ndf == MU_GTR     ? d->alpha / sqrt(fmax(1, d->gamma))
+                         : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
+                         : d->ndf == MU_SHEEN ? sqrt(1 + 0.5 / d->alpha)
+                                              : d->alpha;
+    const double tilt = hypot(d->tilt[0], d->tilt[1]) / width;
     const double scale = sqrt(mu_transform_determinant(d->transform));
-    return d->alpha == 0 ||
-           (width >= 0x1p-30 && width <= 0x1p30 && (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
+    return is_mirror(d) || (tilt < 0x1p30 && width >= 0x1p-30 && width <= 0x1p30 &&
+                            (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
 }
 
 static const char *transform_class(const parsed *p) {
@@ -32,7 +40,8 @@ static const char *transform_class(const parsed *p) {
 
 /* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
-    return p->varying || !mu_transform_is_similarity(p->definition.transform);
+    const mu_definition *d = &p->definition;
+    return p->varying || d->tilt[0] != 0 || d->tilt[1] != 0 || !mu_transform_is_similarity(d->transform);
 }
 
 static void append(char *text, size_t size, const char *more) {
@@ -42,11 +51,14 @@ static void append(char *text, size_t size, const char *more) {
 
 static void name_plan(musurf_material *m, const char *surface) {
     const parsed *p = &m->parsed;
-    const int mirror = p->definition.alpha == 0;
+    const int mirror = is_mirror(&p->definition);
     snprintf(m->name, sizeof m->name, "%s%s%s%s%s", surface, mirror ? "" : ", ",
              mirror ? "" : transform_class(p), mirror ? "" : " transform",
              m->in_float ? "" : ", double precision");
     if (p->definition.fresnel == MU_FRESNEL_NONE) append(m->left_out, sizeof m->left_out, "fresnel");
+    if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
+    if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0)
+        append(m->left_out, sizeof m->left_out, "tilt");
     if (!p->varying) append(m->left_out, sizeof m->left_out, "slots");
     if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
     if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
@@ -78,6 +90,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     musurf_material *m = obtain(host, bytes);
     if (!m) return MUSURF_NO_MEMORY;
     memset(m, 0, sizeof *m);
+    if (p.sampler_auto) p.definition.sampler = musurf_choose_sampler(&p.definition, (char *)m + head);
     m->parsed = p;
     if (host && COVERS(host, release) && host->allocate) {
         m->release = host->release;
@@ -85,9 +98,13 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     }
     m->in_double = mu_surface_make_d(&p.definition, (char *)m + head);
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
-    for (int i = 0; i < 2; i++) m->stretch[i] = (float)p.stretch[i];
-    const int mirror = p.definition.alpha == 0;
-    m->lobe = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
+    for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
+    const int mirror = is_mirror(&p.definition);
+    m->lobes = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
+    if (p.definition.transmission) {
+        if (!mirror) m->lobes |= MUSURF_GLOSSY_TRANSMISSION;
+        if (mirror || p.definition.dielectric == 1) m->lobes |= MUSURF_DELTA_TRANSMISSION;
+    }
     m->needs = (!mirror && anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
                (p.varying ? (uint32_t)MUSURF_NEEDS_SLOTS : 0);
     m->bytes = (uint32_t)bytes;
@@ -113,8 +130,9 @@ static void describe(const musurf_material *m, musurf_plan *plan) {
         .size = plan->size,
         .closure_bytes = m->closure_bytes,
         .closure_alignment = _Alignof(bound),
-        .lobes =
-            m->lobe == MUSURF_DELTA_REFLECTION ? MUSURF_DELTA_REFLECTION | MUSURF_GLOSSY_REFLECTION : m->lobe,
+        /* a blurred mirror is glossy */
+        .lobes = m->lobes | (m->lobes & MUSURF_DELTA_REFLECTION ? (uint32_t)MUSURF_GLOSSY_REFLECTION : 0) |
+                 (m->lobes & MUSURF_DELTA_TRANSMISSION ? (uint32_t)MUSURF_GLOSSY_TRANSMISSION : 0),
         .needs = m->needs,
         .slot_floats = m->parsed.varying ? m->parsed.slot + 4 : 0,
         .table_bytes = m->table_bytes,
@@ -134,9 +152,9 @@ static const musurf_material_type microfacet = {
     .param_count = PARAMETER_COUNT,
     .id = "musurf.microfacet",
     .label = "Transformed microfacets",
-    .doc = "Reflection by microfacets (GGX, Beckmann, GTR with exact Smith masking) whose microsurface is "
-           "deformed by "
-           "any linear map of the tangent plane.",
+    .doc = "Reflection and refraction by microfacets with exact Smith masking whose microsurface is deformed "
+           "by any "
+           "linear map of the tangent plane.",
     .params = musurf_parameters,
     .compile = compile,
     .release = release,

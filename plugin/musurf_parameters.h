@@ -7,14 +7,48 @@
 #include "core/bsdf/musurf.h"
 #include "plugin/musurf_plugin.h"
 
-enum { PARAMETER_COUNT = 13 };
+/* Ids, as in the table. */
+enum {
+    NDF = 1,
+    ALPHA,
+    ROUGHNESS,
+    GAMMA,
+    TRANSFORM,
+    STRETCH,
+    FRESNEL,
+    SCHLICK,
+    DIELECTRIC,
+    CONDUCTOR,
+    N,
+    K,
+    SAMPLER_CHOICE,
+    EXPONENT,
+    ALPHA_X,
+    ALPHA_Y,
+    ROTATION,
+    ANISOTROPY,
+    DISNEY,
+    CYCLES,
+    OPENPBR,
+    GLTF,
+    COVARIANCE,
+    TILT,
+    A_MATRIX,
+    THETA_X,
+    THETA_Y,
+    THETA_Z,
+    MASKING,
+    TRANSMISSION,
+    PARAMETER_END
+};
+enum { PARAMETER_COUNT = PARAMETER_END - 1 };
 extern const musurf_param musurf_parameters[PARAMETER_COUNT];
 
-/* What the settings say. M is transform times diag(stretch); with varying, transform is read from slots at
- * each hit. */
+/* What the settings say. M is transform times `inner`; with varying, transform is read from slots at each hit. */
 typedef struct parsed {
-    mu_definition definition; /* definition.transform is M, or diag(stretch) if varying */
-    double stretch[2];        /* the diagonal of M_s, Eq. (31) */
+    mu_definition definition; /* definition.transform is M, or `inner` if varying */
+    double inner[4];          /* stretch, Eq. (31), times anisotropy: rows */
+    int sampler_auto;         /* the sampler is to be measured */
     int varying;
     uint32_t slot;
 } parsed;

@@ -97,13 +97,16 @@ enum {
     MUSURF_COLOR = 2,  /* three doubles: linear RGB */
     MUSURF_MATRIX = 3, /* four doubles: the two rows of a 2x2 map of tangent-plane positions */
     MUSURF_CHOICE = 4, /* text: one of `choices` */
-    MUSURF_FLAG = 5    /* one double: 0 or 1 */
+    MUSURF_FLAG = 5,   /* one double: 0 or 1 */
+    MUSURF_VECTOR = 6, /* two doubles: x and y in the tangent plane */
+    MUSURF_MATRIX3 = 7 /* nine doubles: the three rows of a 3x3 matrix */
 };
 
 enum {
     MUSURF_MAY_VARY = 1u << 0,     /* accepts MUSURF_SLOT: a value per hit */
     MUSURF_MIN_EXCLUDED = 1u << 1, /* the range is open at min */
-    MUSURF_MAX_EXCLUDED = 1u << 2  /* the range is open at max */
+    MUSURF_MAX_EXCLUDED = 1u << 2, /* the range is open at max */
+    MUSURF_NO_DEFAULT = 1u << 3    /* absent unless set: `initial` says nothing */
 };
 
 /*

@@ -3,35 +3,42 @@
 /* musurf_shading.c: the hot functions of "musurf.microfacet". Nothing here allocates, locks or calls the
  * host. */
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "plugin/musurf_compiled.h"
 
 uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *slots, uint32_t mode,
                       void *closure) {
-    (void)mode; /* reflection is the same for radiance and importance */
     bound *b = closure;
     b->material = m;
     float transform[4];
     if (m->parsed.varying) {
         if (!slots) return 0;
-        for (int i = 0; i < 4; i++) transform[i] = slots[m->parsed.slot + (uint32_t)i] * m->stretch[i % 2];
+        const float *t = slots + m->parsed.slot, *inner = m->inner;
+        for (int i = 0; i < 4; i++)
+            transform[i] = t[i / 2 * 2] * inner[i % 2] + t[i / 2 * 2 + 1] * inner[2 + i % 2];
     }
     if (m->in_float) {
         if (!mu_bind_f(m->in_float, wo, m->parsed.varying ? transform : NULL, &b->closure.f)) return 0;
+        b->closure.f.importance = (mode & MUSURF_IMPORTANCE) != 0;
     } else {
         const double w[3] = {(double)wo[0], (double)wo[1], (double)wo[2]};
         const double t[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
                              (double)transform[3]};
         if (!mu_bind_d(m->in_double, w, m->parsed.varying ? t : NULL, &b->closure.d)) return 0;
+        b->closure.d.importance = (mode & MUSURF_IMPORTANCE) != 0;
     }
-    return m->lobe;
+    return m->lobes;
 }
 
-/* A blurred mirror is glossy. */
-static uint32_t lobe_of(const bound *b) {
-    const int mirror = b->material->in_float ? !b->closure.f.kernel : !b->closure.d.kernel;
-    return mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
+/* The glossy lobe toward wi, or 0. A mirror has none; a blurred one does. */
+static inline uint32_t glossy_lobe(const bound *b, const float wi[3]) {
+    const int in_float = b->material->in_float != NULL;
+    if (in_float ? !b->closure.f.kernel : !b->closure.d.kernel) return 0;
+    if (!b->material->parsed.definition.transmission) return wi[2] > 0 ? MUSURF_GLOSSY_REFLECTION : 0;
+    const float side = in_float ? b->closure.f.side : (float)b->closure.d.side;
+    return wi[2] * side > 0 ? MUSURF_GLOSSY_REFLECTION : wi[2] == 0 ? 0 : MUSURF_GLOSSY_TRANSMISSION;
 }
 
 static float rounded(double x) {
@@ -49,7 +56,8 @@ static void eval_double(const bound *b, const float wi[3], mu_value_f *out) {
 
 static inline void eval(const bound *b, const float wi[3], uint32_t lobes, musurf_value *out) {
     mu_value_f value;
-    if (!(lobes & lobe_of(b) & MUSURF_GLOSSY_REFLECTION) || !(wi[2] > 0)) {
+    const uint32_t lobe = glossy_lobe(b, wi);
+    if (!(lobes & lobe)) {
         *out = (musurf_value){.lobes = 0};
         return;
     }
@@ -58,10 +66,10 @@ static inline void eval(const bound *b, const float wi[3], uint32_t lobes, musur
     } else {
         eval_double(b, wi, &value);
     }
-    for (int k = 0; k < 3; k++) out->f[k] = value.f[k] * wi[2];
+    for (int k = 0; k < 3; k++) out->f[k] = value.f[k] * fabsf(wi[2]);
     out->pdf = value.pdf;
     out->pdf_reverse = value.pdf_reverse;
-    out->lobes = MUSURF_GLOSSY_REFLECTION;
+    out->lobes = lobe;
 }
 
 static void sample_double(const bound *b, const float u[3], mu_sample_f *out) {
@@ -73,27 +81,30 @@ static void sample_double(const bound *b, const float u[3], mu_sample_f *out) {
         out->weight[k] = rounded(s.weight[k]);
     }
     out->pdf = rounded(s.pdf), out->pdf_reverse = rounded(s.pdf_reverse);
-    out->rejected = s.rejected || !(out->wi[2] > 0);
-    out->delta = s.delta;
+    out->rejected = s.rejected || out->wi[2] == 0; /* rounded onto the horizon */
+    out->delta = s.delta, out->transmitted = s.transmitted, out->eta = (float)s.eta;
 }
 
 static inline void sample(const bound *b, const float u[3], uint32_t lobes, musurf_sample *out) {
-    const uint32_t lobe = lobe_of(b);
     mu_sample_f s;
     *out = (musurf_sample){.eta = 1};
-    if (!(lobes & lobe)) return;
     if (b->material->in_float) {
         mu_sample_wi_f(&b->closure.f, u, &s);
     } else {
         sample_double(b, u, &s);
     }
     if (s.rejected) return;
+    const uint32_t lobe = s.transmitted ? s.delta ? MUSURF_DELTA_TRANSMISSION : MUSURF_GLOSSY_TRANSMISSION
+                          : s.delta     ? MUSURF_DELTA_REFLECTION
+                                        : MUSURF_GLOSSY_REFLECTION;
+    if (!(lobes & lobe)) return; /* rejected: the choice among lobes is not the mask's */
     memcpy(out->wi, s.wi, sizeof s.wi);
     memcpy(out->wm, s.wm, sizeof s.wm);
     memcpy(out->weight, s.weight, sizeof s.weight);
     out->pdf = s.pdf;
     out->pdf_reverse = s.pdf_reverse;
-    out->roughness = b->material->in_float ? b->closure.f.alpha : (float)b->closure.d.alpha;
+    out->eta = s.eta;
+    out->roughness = s.delta ? 0 : b->material->in_float ? b->closure.f.alpha : (float)b->closure.d.alpha;
     out->lobe = lobe;
 }
 
@@ -111,16 +122,18 @@ float musurf_pdf(const void *closure, const float wi[3], uint32_t lobes) {
     return value.pdf;
 }
 
-/* Fresnel at the macrosurface: single scattering loses a little of it to masking. */
+/* Fresnel at the macrosurface: single scattering loses a little of it to masking. What transmits loses nothing else. */
 void musurf_albedo(const void *closure, float rgb[3]) {
     const bound *b = closure;
-    if (b->material->in_float) {
-        const mu_pair_values_f mirror = mu_pair_f(
-            &b->closure.f, (const float[3]){-b->closure.f.wo[0], -b->closure.f.wo[1], b->closure.f.wo[2]});
+    if (b->material->parsed.definition.transmission) {
+        rgb[0] = rgb[1] = rgb[2] = 1;
+    } else if (b->material->in_float) {
+        const float *wo = b->closure.f.wo;
+        const mu_pair_values_f mirror = mu_pair_f(&b->closure.f, (const float[3]){-wo[0], -wo[1], wo[2]});
         for (int k = 0; k < 3; k++) rgb[k] = mirror.F[k];
     } else {
-        const mu_pair_values_d mirror = mu_pair_d(
-            &b->closure.d, (const double[3]){-b->closure.d.wo[0], -b->closure.d.wo[1], b->closure.d.wo[2]});
+        const double *wo = b->closure.d.wo;
+        const mu_pair_values_d mirror = mu_pair_d(&b->closure.d, (const double[3]){-wo[0], -wo[1], wo[2]});
         for (int k = 0; k < 3; k++) rgb[k] = (float)mirror.F[k];
     }
 }

@@ -20,7 +20,11 @@ static const musurf_param *param_at(const musurf_material_type *type, uint32_t i
 }
 
 static int numbers_of(musurf_kind kind) {
-    return kind == MUSURF_COLOR ? 3 : kind == MUSURF_MATRIX ? 4 : 1;
+    return kind == MUSURF_COLOR     ? 3
+           : kind == MUSURF_MATRIX  ? 4
+           : kind == MUSURF_VECTOR  ? 2
+           : kind == MUSURF_MATRIX3 ? 9
+                                    : 1;
 }
 
 static void tables_are_sound(void **state) {
@@ -39,7 +43,7 @@ static void tables_are_sound(void **state) {
                 assert_int_not_equal(param->id, param_at(type, j)->id);
                 assert_string_not_equal(param->name, param_at(type, j)->name);
             }
-            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_FLAG);
+            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_MATRIX3);
             if (param->kind == MUSURF_CHOICE) {
                 assert_non_null(param->choices);
                 int found = 0;
@@ -52,7 +56,7 @@ static void tables_are_sound(void **state) {
             assert_true(param->min < param->max);
             assert_true(param->soft_min >= param->min && param->soft_max <= param->max);
             assert_true(isfinite(param->soft_min) && isfinite(param->soft_max));
-            for (int k = 0; k < numbers_of(param->kind); k++) {
+            for (int k = 0; k < numbers_of(param->kind) && !(param->flags & MUSURF_NO_DEFAULT); k++) {
                 const double x = param->initial[k];
                 assert_true(param->flags & MUSURF_MIN_EXCLUDED ? x > param->min : x >= param->min);
                 assert_true(param->flags & MUSURF_MAX_EXCLUDED ? x < param->max : x <= param->max);
@@ -88,7 +92,8 @@ static void wrong_settings_are_refused_by_name(void **state) {
                 MUSURF_INVALID, 987654);
         for (uint32_t i = 0; i < type->param_count; i++) {
             const musurf_param *param = param_at(type, i);
-            double bad[4] = {NAN, NAN, NAN, NAN};
+            double bad[9];
+            for (int k = 0; k < 9; k++) bad[k] = NAN;
             musurf_setting setting = {sizeof setting, param->id, MUSURF_CONSTANT, 0, NULL, NULL};
             refuses(type, &setting, 1, MUSURF_INVALID, param->id); /* neither values nor text */
             setting.source = 77;
@@ -104,7 +109,8 @@ static void wrong_settings_are_refused_by_name(void **state) {
             setting.text = NULL;
             setting.values = bad;
             refuses(type, &setting, 1, MUSURF_INVALID, param->id);
-            memcpy(bad, param->initial, sizeof bad);
+            memset(bad, 0, sizeof bad);
+            memcpy(bad, param->initial, sizeof param->initial);
             const int last = numbers_of(param->kind) - 1;
             bad[last] = INFINITY;
             refuses(type, &setting, 1, MUSURF_INVALID, param->id);
@@ -123,7 +129,8 @@ static void wrong_settings_are_refused_by_name(void **state) {
                 refuses(type, &setting, 1, MUSURF_INVALID, param->id);
             }
             musurf_setting twice[2] = {setting, setting};
-            twice[0].values = twice[1].values = param->initial;
+            bad[last] = last < 4 ? param->initial[last] : 1;
+            twice[0].values = twice[1].values = bad;
             refuses(type, twice, 2, MUSURF_INVALID, param->id);
         }
     }

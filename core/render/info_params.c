@@ -13,6 +13,10 @@ static const char *kind_name(musurf_kind kind) {
         return "color";
     case MUSURF_MATRIX:
         return "matrix";
+    case MUSURF_VECTOR:
+        return "vector";
+    case MUSURF_MATRIX3:
+        return "matrix3";
     case MUSURF_CHOICE:
         return "choice";
     case MUSURF_FLAG:
@@ -29,6 +33,7 @@ static json_t *number(double value) {
 /* As a scene file would write it. */
 static json_t *initial(const musurf_param *p) {
     const double *v = p->initial;
+    if (p->flags & MUSURF_NO_DEFAULT) return json_null();
     switch (p->kind) {
     case MUSURF_NUMBER:
         return number(v[0]);
@@ -36,6 +41,8 @@ static json_t *initial(const musurf_param *p) {
         return json_pack("[o, o, o]", number(v[0]), number(v[1]), number(v[2]));
     case MUSURF_MATRIX:
         return json_pack("[[o, o], [o, o]]", number(v[0]), number(v[1]), number(v[2]), number(v[3]));
+    case MUSURF_VECTOR:
+        return json_pack("[o, o]", number(v[0]), number(v[1]));
     case MUSURF_CHOICE:
         return json_string(p->initial_choice);
     case MUSURF_FLAG:

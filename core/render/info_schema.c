@@ -37,6 +37,10 @@ static json_t *plain_schema(const musurf_param *p) {
         return json_pack("{s:[o, o]}", "anyOf", number_schema(p), array_schema(number_schema(p), 3));
     case MUSURF_MATRIX:
         return array_schema(array_schema(number_schema(p), 2), 2);
+    case MUSURF_VECTOR:
+        return array_schema(number_schema(p), 2);
+    case MUSURF_MATRIX3:
+        return array_schema(array_schema(number_schema(p), 3), 3);
     case MUSURF_FLAG:
         return json_pack("{s:s}", "type", "boolean");
     case MUSURF_CHOICE: {

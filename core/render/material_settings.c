@@ -146,6 +146,23 @@ static _Bool read_matrix(const musurf_param *p, const mu_place *place, double *o
     return read_numbers(p, row, 2, out, error) && read_numbers(p, row + 1, 2, out + 2, error);
 }
 
+static _Bool read_vector(const musurf_param *p, const mu_place *place, double *out, mu_error *error) {
+    if (!is_array_of(place->value, 2))
+        return mu_place_fail(place, error, "a vector of the tangent plane is [x, y]");
+    return read_numbers(p, place, 2, out, error);
+}
+
+static _Bool read_matrix3(const musurf_param *p, const mu_place *place, double *out, mu_error *error) {
+    for (size_t i = 0; i < 3; i++) {
+        const mu_place row = mu_place_element(place, i);
+        if (!is_array_of(place->value, 3) || !is_array_of(row.value, 3))
+            return mu_place_fail(
+                place, error, "a 3x3 matrix is written as its three rows, [[a, b, c], [d, e, f], [g, h, i]]");
+        if (!read_numbers(p, &row, 3, out + 3 * i, error)) return 0;
+    }
+    return 1;
+}
+
 static _Bool read_plain(const musurf_param *p, const mu_place *place, musurf_setting *setting, double *values,
                         mu_error *error) {
     size_t index;
@@ -157,6 +174,10 @@ static _Bool read_plain(const musurf_param *p, const mu_place *place, musurf_set
         return read_color(p, place, values, error);
     case MUSURF_MATRIX:
         return read_matrix(p, place, values, error);
+    case MUSURF_VECTOR:
+        return read_vector(p, place, values, error);
+    case MUSURF_MATRIX3:
+        return read_matrix3(p, place, values, error);
     case MUSURF_FLAG:
         if (!mu_place_flag(place, &flag, error)) return 0;
         values[0] = flag;

@@ -9,7 +9,7 @@
 typedef struct mu_settings {
     const musurf_material_type *type;
     musurf_setting *items; /* room for each parameter of the table */
-    double (*values)[4];   /* items[i].values points to values[i] */
+    double (*values)[9];   /* items[i].values points to values[i] */
     size_t count;
 } mu_settings;
 
@@ -23,7 +23,7 @@ void mu_settings_free(mu_settings *settings);
 const musurf_param *mu_type_find(const musurf_material_type *type, const char *name);
 const musurf_param *mu_type_find_id(const musurf_material_type *type, uint32_t id);
 musurf_setting *mu_settings_find(const mu_settings *settings, const musurf_param *param);
-/* Adds a setting with four zeros for values; there must be none of this parameter yet. */
+/* Adds a setting with zeros for values; there must be none of this parameter yet. */
 musurf_setting *mu_settings_add(mu_settings *settings, const musurf_param *param);
 
 /* Fails at the place of parameter `name` in the object at `place`, or at the object if it is not given there.

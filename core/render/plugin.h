@@ -25,6 +25,8 @@ static inline size_t mu_kind_numbers(musurf_kind kind) {
     return kind == MUSURF_NUMBER || kind == MUSURF_FLAG ? 1
            : kind == MUSURF_COLOR                       ? 3
            : kind == MUSURF_MATRIX                      ? 4
+           : kind == MUSURF_VECTOR                      ? 2
+           : kind == MUSURF_MATRIX3                     ? 9
                                                         : 0;
 }
 

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * musurf_parse_shape.c: the microsurface of a material: which distribution, how rough, and the linear map M that deforms
+ * it. M = transform * stretch * anisotropy: what stands last acts first. Varying, transform comes from slots.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "plugin/musurf_given.h"
+
+enum { ELLIPSOID = MU_NDF_COUNT }; /* the choice after the core's own */
+
+/* The first of these that is set, to something other than 0; or 0. */
+static int any(const given *g, const uint32_t *ids) {
+    for (; *ids; ids++) {
+        const musurf_setting *s = g->by_id[*ids];
+        if (s && !(*ids == TILT || *ids >= THETA_X || *ids == ROTATION)) return (int)*ids;
+        if (s && (s->values[0] != 0 || (*ids == TILT && s->values[1] != 0))) return (int)*ids;
+    }
+    return 0;
+}
+
+static musurf_result misplaced(const given *g, int id, const char *why) {
+    return musurf_fail(g->host, MUSURF_INVALID, (uint32_t)id, "%s", why);
+}
+
+static musurf_result parse_alpha(const given *g, mu_definition *d) {
+    if (g->by_id[ALPHA] && g->by_id[ROUGHNESS])
+        return misplaced(g, ROUGHNESS, "set alpha or roughness (alpha is roughness squared), not both");
+    d->alpha = g->by_id[ROUGHNESS] ? pow(musurf_number(g, ROUGHNESS), 2) : musurf_number(g, ALPHA);
+    if (g->by_id[ROUGHNESS] && musurf_number(g, ROUGHNESS) > 0 && d->alpha == 0) d->alpha = DBL_TRUE_MIN;
+    d->gamma = musurf_number(g, GAMMA);
+    d->exponent = musurf_number(g, EXPONENT);
+    musurf_numbers(g, TILT, 2, d->tilt);
+    return MUSURF_OK;
+}
+
+/* Seed 001: A, or roughness along the axes and three angles. Writes the ellipsoid's M. */
+static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[4]) {
+    const int foreign =
+        any(g, (const uint32_t[]){ROTATION, TILT, DISNEY, CYCLES, OPENPBR, GLTF, COVARIANCE, 0});
+    if (foreign)
+        return misplaced(g, foreign, "an ellipsoid has alpha_x, alpha_y, theta_x, theta_y, theta_z, or A");
+    double A[9];
+    if (g->by_id[A_MATRIX]) {
+        const int twice =
+            any(g, (const uint32_t[]){ALPHA, ROUGHNESS, ALPHA_X, ALPHA_Y, THETA_X, THETA_Y, THETA_Z, 0});
+        if (twice) return misplaced(g, twice, "A says all of an ellipsoid already");
+        musurf_numbers(g, A_MATRIX, 9, A);
+    } else {
+        const double alpha[2] = {g->by_id[ALPHA_X] ? musurf_number(g, ALPHA_X) : d->alpha,
+                                 g->by_id[ALPHA_Y] ? musurf_number(g, ALPHA_Y) : d->alpha};
+        const double theta[3] = {musurf_number(g, THETA_X), musurf_number(g, THETA_Y),
+                                 musurf_number(g, THETA_Z)};
+        mu_ellipsoid_matrix(alpha, theta, A);
+    }
+    d->ndf = MU_GGX, d->alpha = 1;
+    if (mu_ellipsoid(A, m, d->tilt)) return MUSURF_OK;
+    return misplaced(
+        g,
+        g->by_id[A_MATRIX]  ? A_MATRIX
+        : g->by_id[ALPHA_X] ? ALPHA_X
+                            : ALPHA,
+        "makes a singular A: an ellipsoid has three axes, and no normal of the surface lies in its plane");
+}
+
+/* alpha_x, alpha_y, or the anisotropy of another system (musurf.h), turned by rotation. */
+static musurf_result parse_anisotropy(const given *g, mu_definition *d, double m[4]) {
+    const int foreign = any(g, (const uint32_t[]){A_MATRIX, THETA_X, THETA_Y, THETA_Z, 0});
+    if (foreign) return misplaced(g, foreign, "belongs to the ellipsoid, but ndf is another");
+    const double rotation = musurf_number(g, ROTATION);
+    const int along = any(g, (const uint32_t[]){ALPHA_X, ALPHA_Y, 0});
+    int system = musurf_choice(g, ANISOTROPY), named = g->by_id[ANISOTROPY] != NULL;
+    for (uint32_t id = DISNEY; id <= COVARIANCE; id++) {
+        if (!g->by_id[id]) continue;
+        if (named && system != (int)(id - DISNEY) + 1)
+            return misplaced(g, (int)id, "is the anisotropy of one system, but another one is set");
+        system = (int)(id - DISNEY) + 1, named = 1;
+    }
+    if (along && system) return misplaced(g, along, "set alpha_x and alpha_y, or anisotropy, not both");
+    if (along) {
+        const int roughness = any(g, (const uint32_t[]){ALPHA, ROUGHNESS, 0});
+        double x = musurf_number(g, g->by_id[ALPHA_X] ? ALPHA_X : ALPHA_Y),
+               y = musurf_number(g, g->by_id[ALPHA_Y] ? ALPHA_Y : ALPHA_X);
+        if (roughness) x = g->by_id[ALPHA_X] ? x : d->alpha, y = g->by_id[ALPHA_Y] ? y : d->alpha;
+        double base = roughness ? d->alpha : sqrt(x) * sqrt(y);
+        if (d->ndf == MU_PHONG) base = sqrt(2 / (d->exponent + 2)); /* its own slope roughness */
+        if (d->ndf != MU_PHONG) d->alpha = base;
+        if (mu_transform_alphas(base, x, y, rotation, m)) return MUSURF_OK;
+        return musurf_fail(g->host, MUSURF_INVALID, (uint32_t)along,
+                           "alpha_x %.9g and alpha_y %.9g with alpha %.9g: all three above 0, or all 0", x, y,
+                           base);
+    }
+    const double amount = system >= 1 && system <= 4 ? musurf_number(g, DISNEY + (uint32_t)system - 1) : 0;
+    double c[4];
+    musurf_numbers(g, COVARIANCE, 4, c);
+    int good = 1;
+    switch (system) {
+    case 1:
+        good = mu_transform_disney(amount, rotation, m);
+        break;
+    case 2:
+        good = mu_transform_cycles(amount, rotation, m);
+        break;
+    case 3:
+        good = mu_transform_openpbr(amount, rotation, m);
+        break;
+    case 4:
+        if (d->alpha > 1) return misplaced(g, GLTF, "is defined for alpha in [0, 1]");
+        good = mu_transform_gltf(d->alpha, amount, rotation, m);
+        break;
+    case 5:
+        if (c[1] != c[2]) return misplaced(g, COVARIANCE, "a covariance is symmetric: [[xx, xy], [xy, yy]]");
+        good = mu_transform_covariance(d->alpha, c[0], c[1], c[3], rotation, m);
+        break;
+    default:
+        break;
+    }
+    if (good) return MUSURF_OK;
+    return misplaced(g, system == 5 ? COVARIANCE : DISNEY + system - 1,
+                     system == 5   ? "a covariance of slopes is positive definite, and alpha above 0"
+                     : system == 4 ? "needs alpha above 0"
+                                   : "is out of range");
+}
+
+/* out = a b, rows. */
+static void multiply(const double a[4], const double b[4], double out[4]) {
+    for (int i = 0; i < 4; i++) out[i] = a[i / 2 * 2] * b[i % 2] + a[i / 2 * 2 + 1] * b[2 + i % 2];
+}
+
+musurf_result musurf_parse_shape(const given *g, parsed *out) {
+    mu_definition *d = &out->definition;
+    double m[4] = {1, 0, 0, 1}, transform[4] = {1, 0, 0, 1};
+    musurf_result result = parse_alpha(g, d);
+    if (result != MUSURF_OK) return result;
+    const int ndf = musurf_choice(g, NDF);
+    if (ndf != ELLIPSOID) d->ndf = (mu_ndf)ndf;
+    result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, m) : parse_anisotropy(g, d, m);
+    if (result != MUSURF_OK) return result;
+
+    const double s = musurf_number(g, STRETCH);
+    const double stretch[2] = {s < 0 ? 1 + s : 1 / (1 - s), s < 0 ? 1 / (1 + s) : 1 - s}; /* Eq. (31) */
+    for (int i = 0; i < 4; i++) out->inner[i] = stretch[i / 2] * m[i];
+    const musurf_setting *set = g->by_id[TRANSFORM];
+    out->varying = set && COVERS(set, source) && set->source == MUSURF_SLOT;
+    if (out->varying) {
+        out->slot = set->slot;
+        memcpy(d->transform, out->inner, sizeof d->transform);
+    } else {
+        musurf_numbers(g, TRANSFORM, 4, transform);
+        multiply(transform, out->inner, d->transform);
+    }
+    return MUSURF_OK;
+}

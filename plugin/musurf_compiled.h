@@ -20,6 +20,7 @@ struct musurf_material {
     const mu_surface_d *in_double;
     float inner[4]; /* of parsed.inner */
     uint32_t lobes; /* that setup answers */
+    uint32_t transmits;
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
     char name[64];

@@ -101,7 +101,8 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
     const int mirror = is_mirror(&p.definition);
     m->lobes = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
-    if (p.definition.transmission) {
+    m->transmits = p.definition.transmission != 0;
+    if (m->transmits) {
         if (!mirror) m->lobes |= MUSURF_GLOSSY_TRANSMISSION;
         if (mirror || p.definition.dielectric == 1) m->lobes |= MUSURF_DELTA_TRANSMISSION;
     }

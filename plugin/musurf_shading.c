@@ -36,9 +36,9 @@ uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *
 static inline uint32_t glossy_lobe(const bound *b, const float wi[3]) {
     const int in_float = b->material->in_float != NULL;
     if (in_float ? !b->closure.f.kernel : !b->closure.d.kernel) return 0;
-    if (!b->material->parsed.definition.transmission) return wi[2] > 0 ? MUSURF_GLOSSY_REFLECTION : 0;
-    const float side = in_float ? b->closure.f.side : (float)b->closure.d.side;
-    return wi[2] * side > 0 ? MUSURF_GLOSSY_REFLECTION : wi[2] == 0 ? 0 : MUSURF_GLOSSY_TRANSMISSION;
+    const float up = wi[2] * (in_float ? b->closure.f.side : (float)b->closure.d.side);
+    if (up > 0) return MUSURF_GLOSSY_REFLECTION;
+    return up < 0 && b->material->transmits ? MUSURF_GLOSSY_TRANSMISSION : 0;
 }
 
 static float rounded(double x) {

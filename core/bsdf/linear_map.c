@@ -115,7 +115,8 @@ int MU(map_widen)(map *m, double base, double alpha) {
     const double inverse[4] = {(e2 - f2) / det, -(g2 - h2) / det, -(g2 + h2) / det, (e2 + f2) / det};
     /* the tilt acts before M: t V has to stay as M changes to V'^-1 */
     const double t[2] = {(double)m->tilt[0], (double)m->tilt[1]},
-                 mean[2] = {(t[0] * rows[0] + t[1] * rows[2]) / base, (t[0] * rows[1] + t[1] * rows[3]) / base};
+                 mean[2] = {(t[0] * rows[0] + t[1] * rows[2]) / base,
+                            (t[0] * rows[1] + t[1] * rows[3]) / base};
     const double tilt[2] = {mean[0] * inverse[0] + mean[1] * inverse[2],
                             mean[0] * inverse[1] + mean[1] * inverse[3]};
     return MU(map_make)(m, inverse, tilt, 1);

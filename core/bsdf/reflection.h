@@ -31,8 +31,7 @@ static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
     }
 }
 
-static inline void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, const real i[3],
-                                   value *out) {
+HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, const real i[3], value *out) {
     *out = (value){0};
     if (!(i[2] > 0)) return;
     real h[3] = {c->wo[0] + i[0], c->wo[1] + i[1], c->wo[2] + i[2]};

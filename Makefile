@@ -28,6 +28,7 @@ LDFLAGS  += $(SANITIZE) -pthread
 LIBRARIES :=
 MODULES   :=
 PUBLIC_HEADERS :=
+DISTRIBUTION_HEADERS :=
 PROGRAMS  :=
 TEST_PROGRAMS :=
 TESTS     :=
@@ -61,7 +62,7 @@ demo: deps
 INSTALL ?= install
 install: all
 	$(INSTALL) -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/musurf $(DESTDIR)$(PREFIX)/lib/pkgconfig \
-	              $(DESTDIR)$(PREFIX)/include/musurf $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	              $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf $(DESTDIR)$(PREFIX)/share/musurf/scenes
 	$(INSTALL) -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
 	$(INSTALL) -m 755 $(MODULES) $(DESTDIR)$(PREFIX)/lib/musurf
 	$(INSTALL) -m 644 $(BUILD)/libmusurf.a $(BUILD)/libmusurf_render.a $(DESTDIR)$(PREFIX)/lib
@@ -69,6 +70,7 @@ install: all
 	ln -sf libmusurf.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/libmusurf.so.$(SOMAJOR)
 	ln -sf libmusurf.so.$(SOMAJOR) $(DESTDIR)$(PREFIX)/lib/libmusurf.so
 	$(INSTALL) -m 644 $(PUBLIC_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf
+	$(INSTALL) -m 644 $(DISTRIBUTION_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf
 	$(INSTALL) -m 644 $(wildcard scenes/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' scripts/musurf.pc.in \
 	    > $(DESTDIR)$(PREFIX)/lib/pkgconfig/musurf.pc

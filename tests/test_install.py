@@ -67,5 +67,28 @@ class Install(unittest.TestCase):
             self.assertEqual([path for path in prefix.rglob("*") if path.is_file()], [])
 
 
+    def test_a_distribution_from_outside(self):
+        """tests/outside: a distribution of fewer than 120 lines that the library does not have, and a program around it,
+        built against the installed tree alone."""
+        outside = ROOT / "tests/outside"
+        self.assertLess(len((outside / "exponential.c").read_text().splitlines()), 120)
+        with tempfile.TemporaryDirectory() as folder:
+            prefix = pathlib.Path(folder) / "usr"
+            run("make", "install", f"BUILD={BUILD}", f"PREFIX={prefix}")
+            env = dict(os.environ, PKG_CONFIG_PATH=str(prefix / "lib/pkgconfig"), LD_LIBRARY_PATH=str(prefix / "lib"))
+            flags = run("pkg-config", "--cflags", "--libs", "musurf", env=env).split()
+            kit = run("pkg-config", "--variable=distributiondir", "musurf", env=env).strip()
+            objects = []
+            for bits in (24, 53):
+                objects.append(pathlib.Path(folder) / f"exponential{bits}.o")
+                run("cc", "-std=c17", "-O2", "-Wall", "-Wextra", "-Werror", "-fno-math-errno", *SANITIZE, f"-I{kit}",
+                    f"-DMU_REAL_BITS={bits}", "-c", outside / "exponential.c", "-o", objects[-1])
+            program = pathlib.Path(folder) / "program"
+            run("cc", "-std=c17", "-O2", "-Wall", "-Werror", *SANITIZE, outside / "program.c", *objects, "-o", program, *flags, "-lm")
+            out = run(program, env=env)
+            self.assertEqual(out.count("should be"), 5, out)
+            self.assertNotIn("BROKEN", out)
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main())

@@ -57,6 +57,11 @@ static int check_transmission(const mu_definition *d, mu_complaint *why) {
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
         return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
+    if (d->ndf == MU_CUSTOM && !d->custom_f && !d->custom_d) {
+        why->field = "custom_f";
+        snprintf(why->text, sizeof why->text, "custom_f or custom_d is needed where ndf is MU_CUSTOM");
+        return 0;
+    }
     if (d->ndf == MU_GTR && d->alpha > 1)
         return complain(why, "alpha", d->alpha, "gtr is defined for alpha in [0, 1]");
     if (d->ndf == MU_GTR && !(d->gamma >= 0 && d->gamma <= DBL_MAX))

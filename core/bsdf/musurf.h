@@ -44,7 +44,8 @@ typedef enum mu_ndf {
     MU_PHONG,    /* D = (n + 2) cos^n / 2 pi */
     MU_SHEEN,    /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
     MU_FLAT,     /* no microfacets: a mirror or a pane */
-    MU_NDF_COUNT
+    MU_NDF_COUNT,
+    MU_CUSTOM = 1000 /* a distribution that is not of this library: custom_f, custom_d */
 } mu_ndf;
 typedef enum mu_sampler {
     MU_SAMPLE_VISIBLE, /* visible normals, Eq. (28): the exact one of every distribution */
@@ -66,6 +67,9 @@ typedef enum mu_fresnel_kind {
     MU_FRESNEL_CONDUCTOR
 } mu_fresnel_kind;
 
+struct mu_kernel_f;
+struct mu_kernel_d;
+
 /* What a surface is. Doubles whatever the precision of shading. */
 typedef struct mu_definition {
     mu_ndf ndf;
@@ -78,6 +82,10 @@ typedef struct mu_definition {
     mu_masking_form masking;
     int transmission; /* also refracts: then Fresnel must be dielectric, and the surface has two sides */
     mu_fresnel_kind fresnel;
+    /* MU_CUSTOM: what a file written by distribution.h defines, compiled for float and for double; NULL: not in that
+     * precision. It reads alpha, gamma and exponent as it likes. */
+    const struct mu_kernel_f *custom_f;
+    const struct mu_kernel_d *custom_d;
     double schlick[3]; /* reflectance at normal incidence */
     double dielectric; /* n_below / n_above */
     double n[3], k[3]; /* conductor: real index and extinction, relative to the medium above */

@@ -4,6 +4,8 @@ BSDF_SOURCES := $(wildcard core/bsdf/*.c)
 BSDF_OBJECTS := $(BSDF_SOURCES:%.c=$(BUILD)/obj/%.f.o) $(BSDF_SOURCES:%.c=$(BUILD)/obj/%.d.o)
 LIBRARIES += $(BUILD)/libmusurf.a $(BUILD)/libmusurf.so
 PUBLIC_HEADERS += core/bsdf/musurf.h core/bsdf/musurf_real.h
+# What a distribution of somebody else's is written with.
+DISTRIBUTION_HEADERS += $(wildcard core/bsdf/*.h)
 
 $(BUILD)/obj/core/bsdf/%.f.o: core/bsdf/%.c
 	@mkdir -p $(@D)

@@ -33,6 +33,8 @@ static plan choose_std(const mu_definition *d, double alpha, double gamma) {
 }
 
 static plan choose(const mu_definition *d) {
+    const kernel *const custom = d->MU(custom);
+    if (d->ndf == MU_CUSTOM) return (plan){custom, *d, custom ? custom->name : "none"};
     if (d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG)) return (plan){NULL, *d, "mirror"};
     switch (d->ndf) {
     case MU_GTR: /* GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma = 0 */

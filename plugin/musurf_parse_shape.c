@@ -39,8 +39,7 @@ static musurf_result parse_alpha(const given *g, mu_definition *d) {
 
 /* Seed 001: A, or roughness along the axes and three angles. Writes the ellipsoid's M. */
 static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[4]) {
-    const int foreign =
-        any(g, (const uint32_t[]){ROTATION, TILT, DISNEY, CYCLES, OPENPBR, GLTF, COVARIANCE, 0});
+    const int foreign = any(g, (const uint32_t[]){ROTATION, DISNEY, CYCLES, OPENPBR, GLTF, COVARIANCE, 0});
     if (foreign)
         return misplaced(g, foreign, "an ellipsoid has alpha_x, alpha_y, theta_x, theta_y, theta_z, or A");
     double A[9];
@@ -56,8 +55,13 @@ static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[
                                  musurf_number(g, THETA_Z)};
         mu_ellipsoid_matrix(alpha, theta, A);
     }
+    double own[2];
     d->ndf = MU_GGX, d->alpha = 1;
-    if (mu_ellipsoid(A, m, d->tilt)) return MUSURF_OK;
+    if (mu_ellipsoid(A, m, own)) { /* a further tilt t adds t.(M p) to the height over p */
+        const double t[2] = {d->tilt[0], d->tilt[1]};
+        for (int i = 0; i < 2; i++) d->tilt[i] = own[i] + m[i] * t[0] + m[2 + i] * t[1];
+        return MUSURF_OK;
+    }
     return misplaced(
         g,
         g->by_id[A_MATRIX]  ? A_MATRIX

@@ -176,7 +176,7 @@ mu_flake_tally mu_flake_count(const mu_flakes *flakes, const double footprint[6]
     const double size = 4 * fabs(a[0] * b[1] - a[1] * b[0]),
                  around = 2 * (fabs(a[0]) + fabs(a[1]) + fabs(b[0]) + fabs(b[1]));
     mu_flake_tally tally = {0, flakes->density * size * (box->p[1] - box->p[0]) * box->q_width, 0};
-    if (!(tally.expected > 0 && tally.expected < SMOOTH && fabs(footprint[0]) <= DBL_MAX &&
+    if (!(tally.expected > 0 && tally.expected < SMOOTH && box->q >= 0 && fabs(footprint[0]) <= DBL_MAX &&
           fabs(footprint[1]) <= DBL_MAX))
         return smooth;
 

@@ -46,10 +46,14 @@ typedef double mu_flake_cdf(double slope2);
 double mu_flake_cdf_ggx(double slope2);
 double mu_flake_cdf_beckmann(double slope2);
 
-/* The box for the cone of half-angle tau around m, both in the distribution's own space (m = M^T wm, any length): the
- * sector of polar angles theta +- tau, theta that of m, clamped to [0, pi/2], whose azimuths, centred at m's, are as many as make its
- * solid angle the cone's, 2 pi (1 - cos tau) (or all). Exact for every tau while theta + tau <= pi/2; around the pole it
- * becomes the cap, continuously. It contains m, and has 2^-40 of all p at least. */
+/* The box for the cone of half-angle tau around m, both in the distribution's own space (m = M^T wm, any length).
+ *
+ * It is the sector of polar angles theta +- tau, theta that of m, cut off at 0 and pi/2, whose azimuths, centred at m's,
+ * are as many as make its solid angle the cone's, 2 pi (1 - cos tau), or all. So it is exact for every tau while theta +
+ * tau <= pi/2, turns continuously into the cap around the pole, and contains m; p[1] - p[0] is 2^-40 at least.
+ *
+ * A cone of half-angle t about wm, after M, has about the same share of the flakes as the one of tau = t sqrt(D_M(wm) wm.z
+ * / (D(m) m.z)) here (unit m and wm): for M = 1/alpha and wm = z that is t / alpha. */
 mu_flake_normals mu_flake_cone(mu_flake_cdf *cdf, const double m[3], double tau);
 
 /* footprint: u, v of the centre and the two half-axes of a parallelogram: u0, v0, u1, v1. It is taken as it is, but for

@@ -70,7 +70,8 @@ class Output(unittest.TestCase):
     """A result that was not written is not a success."""
 
     def test_full_disk(self):
-        for arguments in (["eval"], ["sample"], ["info"], ["--help"], ["eval", "--help"], ["--version"]):
+        for arguments in (["eval"], ["sample"], ["info"], ["--help"], ["eval", "--help"], ["--version"],
+                          ["check", "--quick", "--n", "1"], ["render", ROOT / "scenes/first.json", "--explain"]):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([MUSURF, *arguments], input=LINE, stdout=full, stderr=subprocess.PIPE, timeout=60)
             self.assertEqual(done.returncode, 1, arguments)

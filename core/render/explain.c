@@ -10,6 +10,7 @@
  */
 #include "core/render/explain.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <link.h>
 #include <string.h>
@@ -90,8 +91,11 @@ _Bool mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out, mu_e
                   "left_out", left_out, "materials", materials, "meshes", meshes, "lights", "table_bytes",
                   (json_int_t)mu_lights_table_bytes(lights), "image_bytes",
                   (json_int_t)mu_lights_image_bytes(lights), "plugins", plugins, "libraries", libraries);
+    if (!all) return mu_fail(error, "not enough memory for --explain");
+    errno = 0;
     const _Bool written =
-        all && !json_dumpf(all, out, JSON_INDENT(2)) && fputc('\n', out) != EOF && fflush(out) != EOF;
+        !json_dumpf(all, out, JSON_INDENT(2)) && fputc('\n', out) != EOF && fflush(out) != EOF;
+    const int why = errno;
     json_decref(all);
-    return written || mu_fail(error, "--explain cannot be written");
+    return written || mu_fail(error, "standard output: %s", why ? strerror(why) : "could not be written");
 }

@@ -68,7 +68,7 @@ class Layout(unittest.TestCase):
             if "SPDX-License-Identifier: MIT" not in text[:200]:
                 wrong.append(f"{file.relative_to(ROOT)}: no SPDX head")
         self.assertEqual(wrong, [])
-        self.assertLess(sorted(lengths)[len(lengths) // 2], 200)
+        self.assertLess(sorted(lengths)[len(lengths) // 2], 150)
 
     def test_no_fast_math_and_no_machine_paths(self):
         wrong = []

@@ -4,6 +4,7 @@
 """`musurf render` from the outside: the same bits whatever the threads and interruptions, stopping rules, metadata,
 refusals, full disks. The images are read by tests/exr.py, not by the library that wrote them."""
 import json
+import math
 import os
 import pathlib
 import resource
@@ -199,6 +200,24 @@ class Render(unittest.TestCase):
         self.assertEqual(image["A"][0, 0], 0)
         self.assertEqual(image["A"][24, 32], 1)
         self.assertAlmostEqual(float(image["albedo.G"][24, 32]), 0.6, delta=0.6 * 2**-11)  # a half
+
+    def test_cameras_see_what_they_should(self):
+        """A sheet of 2 x 1 from above, by the exact pixels it covers: from anywhere the same for parallel rays of a view 4
+        high; for central ones with a vertical opening of 2 atan(1/5), a view of 4 high at a distance of 10, half at 20."""
+        for kind, opening, seen in (("orthographic", {"height": 4}, {1: (20, 10), 500: (20, 10)}),
+                                    ("perspective", {"fov": 2 * math.degrees(math.atan(0.2))}, {10: (20, 10), 20: (10, 5)})):
+            for distance, (wide, high) in seen.items():
+                camera = {"type": kind, "position": [0, 0, distance], "target": [0, 0, 0], "up": [0, 1, 0], **opening}
+                sheet = [{"shape": "rectangle", "size": [2, 1], "material": "clay"}]
+                film = {"width": 80, "height": 41 if high % 2 else 40, "filter": "box"}
+                if kind == "perspective" and high % 2:  # an odd number of rows, so that none is cut: a view of 4.1
+                    camera["fov"] = 2 * math.degrees(math.atan(0.2 * 41 / 40))
+                pathlib.Path(self.scene).write_text(json.dumps(dict(SCENE, camera=camera, film=film, objects=sheet)))
+                _, image = self.image("out.exr", "--spp", "4")
+                with self.subTest(kind, distance=distance):
+                    self.assertEqual(set(numpy.unique(image["A"])), {0, 1})
+                    rows, columns = image["A"].nonzero()
+                    self.assertEqual((numpy.ptp(columns) + 1, numpy.ptp(rows) + 1, len(rows)), (wide, high, wide * high))
 
     def test_png_beside(self):
         self.image("out.exr", "--png", self.path("out.png"), "--size", "40x30")

@@ -84,14 +84,16 @@ static void draw_map(map_kind kind, mu_stream *random, double m[4]) {
     }
 }
 
+/* One of the two pure samplers, whose normals have a density to be held to, if the type has a say in it at all: mixtures
+ * of them have none of their own. */
 static const char *choice_of_sampler(const musurf_material_type *type, uint64_t index) {
+    static const char *const pure[] = {"visible", "ndf"};
     for (uint32_t i = 0; i < type->param_count; i++) {
         const musurf_param *p =
             (const musurf_param *)(const void *)((const char *)type->params + i * type->params[0].size);
         if (strcmp(p->name, "sampler") || p->kind != MUSURF_CHOICE || !p->choices) continue;
-        size_t count = 0;
-        while (p->choices[count]) count++;
-        return count ? p->choices[index % count] : NULL;
+        for (size_t k = 0; p->choices[k]; k++)
+            if (!strcmp(p->choices[k], pure[index % 2])) return pure[index % 2];
     }
     return NULL;
 }

@@ -165,19 +165,26 @@ static void interruptions_change_nothing(void **state) {
     mu_film_free(&film);
 }
 
+/* A render rests 50 times as long as a checkpoint took, so on a busy disk there may be only one until its end: then it is
+ * made again, longer. */
 static void checkpoints_rest_in_the_midst_of_a_pass(void **state) {
     (void)state;
-    mu_error error = {.text = ""};
-    world w = {.slow_nanoseconds = 100000, .file = in_folder("periodic.resume")};
-    mu_film film = black(), saved = black();
-    assert_int_equal(render(&film, &w, 2, 8, 0, 0), MU_RENDER_DONE);
-    assert_true(w.checkpoints > 1);
-    assert_true(w.reports > 1);
-    assert_is_sum(&film);
-    assert_true(mu_film_load(&saved, w.file, 1, &error));
-    assert_is_sum(&saved);
-    mu_film_free(&film);
-    mu_film_free(&saved);
+    unsigned checkpoints = 0;
+    for (uint64_t slow = 100000; checkpoints < 2 && slow <= 3200000; slow *= 2) {
+        mu_error error = {.text = ""};
+        world w = {.slow_nanoseconds = slow, .file = in_folder("periodic.resume")};
+        mu_film film = black(), saved = black();
+        assert_int_equal(render(&film, &w, 2, 8, 0, 0), MU_RENDER_DONE);
+        assert_true(w.checkpoints >= 1);
+        assert_true(w.reports > 1);
+        assert_is_sum(&film);
+        assert_true(mu_film_load(&saved, w.file, 1, &error));
+        assert_is_sum(&saved);
+        checkpoints = w.checkpoints;
+        mu_film_free(&film);
+        mu_film_free(&saved);
+    }
+    assert_true(checkpoints > 1);
 }
 
 static void time_is_kept_in_whole_passes(void **state) {

@@ -22,7 +22,8 @@ CPPFLAGS += -D_GNU_SOURCE -DMUSURF_VERSION='"$(VERSION)"' -I.
 LDFLAGS  += $(SANITIZE) -pthread
 
 .DEFAULT_GOAL := all
-.PHONY: all clean distclean install uninstall test demo bench tables deps help run-test run-demo run-tables asan ubsan tsan
+.PHONY: all clean distclean install uninstall test demo bench tables stability deps help run-test run-demo run-tables \
+        run-stability asan ubsan tsan
 
 # Rooms: each adds to LIBRARIES, PROGRAMS, MODULES, TEST_PROGRAMS and TESTS.
 LIBRARIES :=
@@ -97,6 +98,7 @@ help:
 	@echo 'make            build everything into $(BUILD)/'
 	@echo 'make bench      speed, as ratios measured in one run'
 	@echo 'make tables     measure the accuracy and speed tables of the README again'
+	@echo 'make stability  measure errors over stiff and extreme cases, in float and double, into $(BUILD)/stability/'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'
 	@echo 'make install    PREFIX=/usr/local DESTDIR= ; also: uninstall'
 	@echo 'make clean      remove what was built; distclean removes $(BUILD)/ with the virtual environment'

@@ -181,6 +181,8 @@ class Bsdf:
         if masking == "separable":
             return 1 / ((1 + Lo) * (1 + Li))
         if masking == "direction_correlated" and reflecting:
+            if min(Lo, Li) > 0 and not (any(po) and any(pi)):
+                return None  # a view along the normal has no azimuth
             phi = abs(mp.atan2(po[0] * pi[1] - po[1] * pi[0], po[0] * pi[0] + po[1] * pi[1]))
             g = 1 / (1 + mp.mpf("4.41") * phi)
             return 1 / (1 + max(Lo, Li) + (1 - g) * min(Lo, Li))
@@ -189,6 +191,7 @@ class Bsdf:
     def evaluate(self, Lambda):
         """All that is defined here, by name; Lambda(ndf, alpha, gamma, tau, side) supplies the Smith integral."""
         self.prepare()
+        self.density = ZERO  # at the half-vector
         x = self.x
         o, m, i = (unit([x[f"{name}{k}"] for k in range(3)]) for name in ("wo", "wm", "wi"))
         o, i = [e * x["|wo|"] for e in o], [e * x["|wi|"] for e in i]
@@ -222,15 +225,17 @@ class Bsdf:
         G2 = self.G2(max(ZERO, out["Lambda"]), max(ZERO, more / abs(i[2])), po, pi, side > 0)
         F = fresnel(self.kind, index, oh)
         F = F if len(F) == 3 else F * 3
-        out["G2"] = G2
+        self.density = Do
+        if G2 is not None:
+            out["G2"] = G2
         if side > 0:
-            value, pdf, factor = Do * G2 / (4 * o[2] * i[2]), Do / (4 * sigma), F
+            value, pdf, factor = Do / (4 * o[2] * i[2]), Do / (4 * sigma), F
         else:
             jacobian = abs(ih) / (eta * ih + oh) ** 2
-            value = oh * jacobian / (o[2] * abs(i[2])) * G2 * Do
+            value = oh * jacobian / (o[2] * abs(i[2])) * Do
             pdf, factor = Do * oh / sigma * jacobian * eta ** 2, [1 - f for f in F]
         out["pdf"] = pdf * factor[0] if transmits else pdf
         out.update({f"F{k}": F[k] for k in range(3)})
-        out.update({f"f{k}": value * factor[k] for k in range(3)})
-        self.density = Do
+        if G2 is not None:
+            out.update({f"f{k}": value * G2 * factor[k] for k in range(3)})
         return out

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Error against one axis at a time: alpha, the view, the condition of M. Left as measured, right beyond what the inputs
+explain; above in double, below in float. Each point is one value, each line the 99th percentile of a quantity."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from .measure import QUANTITIES  # noqa: E402
+from .tables import FORMATS, SYMBOL  # noqa: E402
+
+AXES = {"alpha": "α (alpha; of phong √(2/(n+2)))", "cos": "cosine of the view, from the horizon (left) to the normal",
+        "cond": "condition of M"}
+EPSILON = {"double": 2.0**-53, "float": 2.0**-24}
+
+
+def position(x, axis, places):
+    """alpha = 1 - 1e-7 stands beside alpha = 1, and what is 0 at the left."""
+    if axis == "alpha" and x == 1 - 1e-7:
+        return 0.8
+    return x if x > 0 else min(p for p in places if p > 0) / 10
+
+
+def panel(ax, records, axis, key, floor):
+    colours = plt.get_cmap("tab10").colors
+    rng = np.random.default_rng(1)
+    places = sorted({r[axis] for r in records})
+    for colour, quantity in zip(colours, QUANTITIES):
+        rows = [r for r in records if r["quantity"] == quantity]
+        if not rows:
+            continue
+        x = np.array([position(r[axis], axis, places) for r in rows])
+        y = np.maximum([r[key] for r in rows], floor)
+        ax.plot(x * 10 ** rng.uniform(-0.12, 0.12, len(x)), y, ".", color=colour, markersize=1.5, alpha=0.35)
+        line = [(p, np.percentile(y[x == p], 99)) for p in np.unique(x) if np.sum(x == p) >= 10]
+        if line:
+            ax.plot(*zip(*line), "-", color=colour, linewidth=1.2, label=SYMBOL.get(quantity, quantity))
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.grid(alpha=0.2)
+
+
+def draw(records, axis, path):
+    figure, panels = plt.subplots(2, 2, figsize=(12, 8), sharex=True, sharey="row", layout="constrained")
+    for row, precision in zip(panels, FORMATS):
+        shown = [r for r in records if r["precision"] == precision and r["determined"] and r[axis] is not None]
+        for ax, key, title in ((row[0], "error", "as measured"), (row[1], "excess", "beyond what the inputs explain")):
+            panel(ax, shown, axis, key, EPSILON[precision] / 8)
+            ax.axhline(EPSILON[precision], color="black", linewidth=0.7, linestyle=":")
+            ax.set_title(f"{precision}: {title}")
+    if panels[0][0].lines:
+        panels[0][0].legend(fontsize=8, ncols=3)
+    for ax in panels[1]:
+        ax.set_xlabel(AXES[axis])
+    for ax in panels[:, 0]:
+        ax.set_ylabel("relative error (dotted: half an ULP of 1)")
+    figure.savefig(path, dpi=110)
+    plt.close(figure)

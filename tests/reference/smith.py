@@ -62,9 +62,7 @@ def Lambda(ndf, alpha, gamma, tau, digits=30):
         return mp.mpf(0)
     if ndf == "beckmann":
         c = 1 / (alpha * tau)
-        if c > 1e5:
-            return mp.mpf(0)  # e^{-c^2} / 4 sqrt(pi) c^3 < 1e-4000000000
-        with mp.workdps(100):
+        with mp.workdps(100 + int(4 * mp.log10(1 + c))):
             return mp.exp(-c * c) / (2 * c * mp.sqrt(mp.pi)) - mp.erfc(c) / 2
     if ndf == "ggx" or (ndf == "gtr" and alpha == 1):
         z = (alpha * tau) ** 2

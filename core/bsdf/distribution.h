@@ -49,6 +49,12 @@ static inline real flat_square(const real u[3]) {
     return smaller(u[0] * u[0] + u[1] * u[1], REAL_MAX / 16);
 }
 
+/* ln(1 + p/q) of positive p and q, also where the quotient overflows. */
+static inline real log1p_ratio(real p, real q) {
+    const real quotient = p / q;
+    return quotient <= REAL_MAX ? log1p(quotient) : log(p) - log(q);
+}
+
 /* A distribution with the generic transform compiled around it, for one plan (linear_map.h). */
 struct MU(mu_kernel) {
     const char *name;

@@ -15,7 +15,7 @@ static inline real density(const base *b, const real u[3], real n2) {
     const real r2 = s[SHEEN_UNIT] * flat_square(u) * s[SHEEN_UNIT], z2 = larger(u[2] * u[2], REAL_MIN);
     const real t = s[SHEEN_UNIT] * n2 / (z2 + r2) * s[SHEEN_UNIT];
     if (r2 == 0 && s[SHEEN_K] > 0) return 0;
-    return R(INV_PI) * t * t * exp(-s[SHEEN_K] * log1p(z2 / larger(r2, REAL_MIN)));
+    return R(INV_PI) * t * t * exp(-s[SHEEN_K] * log1p_ratio(z2, larger(r2, REAL_MIN)));
 }
 
 static inline real z_lambda(const base *b, const real w[3]) {

@@ -12,7 +12,7 @@ A value v computed in p bits passes if |v - exact| <= |exact| (base + C c 2^-p),
   base  is what all the arithmetic after that, which amplifies nothing, may cost: 1e-12 in double, 1e-4 in float.
 Where base + C c 2^-p reaches 1/2 the inputs do not determine a digit: there only the sign and finiteness count. Values too
 small or too large for the format are held to be near zero, or not compared; and where D itself leaves the format's normal
-numbers, what is made of it (Dv, and of D at the half-vector f and pdf) may be off by the smallest normal number over D; so for sigma.
+numbers, what is made of it (Dv, and of D at the half-vector f and pdf) may be off by the smallest normal number over D; so for sigma before M.
 
     tests/test_reference.py [--quick]      --quick: every fifth line; the exit status tells
 """
@@ -43,8 +43,8 @@ def flatten(answer):
 def underflow(precision, line, key):
     """What rounding D and sigma near the format's smallest number may do to a value made of them, relative."""
     expect, made_of = line["expect"], []
-    if key in ("G1", "Dv", "pdf") and "sigma" in expect:  # sigma vanishes where tilt turns every facet from the viewer
-        made_of.append(expect["sigma"])
+    if key in ("sigma", "G1", "Dv", "pdf") and "sigma0" in line:  # it vanishes where tilt turns every facet from the viewer
+        made_of.append(line["sigma0"])
     if key == "Dv":
         made_of.append(expect["D"])
     if (key == "pdf" or key[0] == "f") and "Dh" in line:

@@ -29,7 +29,7 @@ def answer(question):
     case = Bsdf(material, question["wo"], question["wm"], question["wi"])
     values, c53, c24 = conditioning.measure(case, DIGITS)
     return {"id": question["id"], "expect": {key: mp.nstr(value, DIGITS) for key, value in values.items()},
-            "c53": c53, "c24": c24, "Dh": float(mp.nstr(case.density, 4))}
+            "c53": c53, "c24": c24, "Dh": float(mp.nstr(case.density, 4)), "sigma0": float(mp.nstr(case.visible, 4))}
 
 
 def answers(questions, folder, say):

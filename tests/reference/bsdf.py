@@ -71,7 +71,7 @@ class Bsdf:
     """Numbers by name that may be perturbed one by one. Those named by ABSOLUTE stand at 0 or 1 and are what no input
     number is but every program has: the lengths of its unit vectors, and the entries of the composed map."""
 
-    ABSOLUTE = ("|wo|", "|wi|", *(f"d{i}" for i in range(6)))
+    ABSOLUTE = ("|wo|", "|wi|", *(f"d{i}" for i in range(9)))
 
     def __init__(self, material, wo, wm, wi):
         self.material, self.ndf = material, material["ndf"]
@@ -89,7 +89,7 @@ class Bsdf:
         self.composed = self.ndf == "ellipsoid" or "alpha_x" in material or "tilt" in material
         x.update({"|wo|": ONE, "|wi|": ONE})
         if self.composed:
-            x.update({f"d{i}": ZERO for i in range(6)})
+            x.update({f"d{i}": ZERO for i in range(9 if self.ndf == "ellipsoid" else 6)})
         self.kind, values = "none", material.get("fresnel", "none")
         if isinstance(values, dict):
             self.kind, values = next(iter(values.items()))
@@ -130,17 +130,26 @@ class Bsdf:
 
     def prepare(self):
         self.M, self.t = self.map()
-        (a, c), (b, d) = self.M
-        self.det = a * d - b * c
+        self.det = self.M[0][0] * self.M[1][1] - self.M[0][1] * self.M[1][0]
         if self.ndf == "ellipsoid":
             self.A = ellipsoid_matrix(self.x)
-            if any(self.x[f"d{i}"] for i in range(5)):  # what a program keeps of A is rounded too
-                a, b, c, p, q = (value * (1 + self.x[f"d{i}"]) for i, value in enumerate(upper(self.A)))
-                self.A = [[a, b, ZERO], [ZERO, c, ZERO], [p, q, ONE]]
+            if any(self.x[f"d{i}"] for i in range(9)):
+                self.rounded()
             columns = list(zip(*self.A))
             self.cofactors = [cross(self.A[1], self.A[2]), cross(self.A[2], self.A[0]), cross(self.A[0], self.A[1])]
             self.det_A = dot(self.A[0], self.cofactors[0])
             self.An = columns[2]
+
+    def rounded(self):
+        """What a program keeps of A is rounded (d0 to d4), and so is its product with M (d5 to d8): M N^-1 + d |M| |N^-1|,
+        N = [[a, b], [0, c]], is M moved by d |M| |N^-1| N."""
+        d = [self.x[f"d{i}"] for i in range(9)]
+        a, b, c, p, q = (value * (1 + d[i]) for i, value in enumerate(upper(self.A)))
+        self.A = [[a, b, ZERO], [ZERO, c, ZERO], [p, q, ONE]]
+        sizes = product([[abs(e) for e in row] for row in self.M], [[abs(1 / a), abs(b / (a * c))], [ZERO, abs(1 / c)]])
+        moves = product([[d[5 + 2 * i + j] * sizes[i][j] for j in range(2)] for i in range(2)], [[a, b], [ZERO, c]])
+        self.M = [[self.M[i][j] + moves[i][j] for j in range(2)] for i in range(2)]
+        self.det = self.M[0][0] * self.M[1][1] - self.M[0][1] * self.M[1][0]
 
     def original(self, w):
         """B^-1 w and how far its z is from that of w."""
@@ -192,6 +201,7 @@ class Bsdf:
         """All that is defined here, by name; Lambda(ndf, alpha, gamma, tau, side) supplies the Smith integral."""
         self.prepare()
         self.density = ZERO  # at the half-vector
+        self.visible = ONE
         x = self.x
         o, m, i = (unit([x[f"{name}{k}"] for k in range(3)]) for name in ("wo", "wm", "wi"))
         o, i = [e * x["|wo|"] for e in o], [e * x["|wi|"] for e in i]
@@ -206,6 +216,7 @@ class Bsdf:
             return {"pdf": ZERO, **{f"f{k}": ZERO for k in range(3)}}
         out = {}
         sigma, excess, po = self.sigma(o, Lambda, 0)
+        self.visible = sigma / length(self.original(o)[0])  # the untransformed surface's, of a unit vector
         out["sigma"], out["Lambda"], out["D"] = sigma, excess / o[2], self.D(m)
         if m[2] > 0:
             out["G1"] = min(ONE, o[2] / sigma) if dot(o, m) > 0 else ZERO

@@ -30,7 +30,7 @@ def measure(case, digits=30):
         return value * mp.exp(sum(k * mp.log(x / x0) for k, x, x0 in zip(slopes, point[1:], origin) if k and x0))
 
     values = case.evaluate(exact)
-    density = case.density
+    density, visible = case.density, case.visible
     conditions = []
     with mp.workdps(40):
         for bits in (53, 24):
@@ -51,5 +51,5 @@ def measure(case, digits=30):
                     moves[key] += most[key]
             conditions.append({key: 0.0 if moves[key] == 0 else float(mp.nstr(min(
                 moves[key] / abs(values[key]) / step if values[key] else mp.inf, mp.mpf(10) ** 99), 3)) for key in values})
-    case.density = density
+    case.density, case.visible = density, visible
     return values, *conditions

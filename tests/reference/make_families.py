@@ -8,7 +8,8 @@
 STD, Phong, sheen, ellipsoids (by A and by angles), anisotropy by alpha_x and alpha_y, tilt, every masking, refraction
 from both sides to both sides, and opaque surfaces from behind. Lines are those of eval.jsonl; a value that the
 definitions leave open (the azimuth of a view along the normal, F where nothing is refracted) is left out of "expect".
-"Dh" is D at the half-vector, roughly: where that leaves a format's range, f and pdf are not held to it.
+"Dh" is D at the half-vector and "sigma0" sigma before M, of a unit vector, roughly: where those leave a format's range,
+what is made of them is not held to it.
 """
 import json
 import math
@@ -149,7 +150,7 @@ def reference(line):
     values, c53, c24 = conditioning.measure(case)
     line["expect"] = {key: mp.nstr(value, 25) for key, value in values.items()}
     line["c53"], line["c24"] = c53, c24
-    line["Dh"] = float(mp.nstr(case.density, 4))
+    line["Dh"], line["sigma0"] = float(mp.nstr(case.density, 4)), float(mp.nstr(case.visible, 4))
     return json.dumps(line)
 
 

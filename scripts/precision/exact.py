@@ -47,4 +47,6 @@ def answers(questions, folder, say):
                 if number % 500 == 0:
                     say(f"  {number} of {len(questions)}")
         part.replace(path)
+        for old in set(folder.glob("exact-*.jsonl")) - {path}:
+            old.unlink()
     return [json.loads(line) for line in open(path)]

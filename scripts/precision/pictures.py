@@ -51,7 +51,7 @@ def draw(records, axis, path):
             ax.axhline(EPSILON[precision], color="black", linewidth=0.7, linestyle=":")
             ax.set_title(f"{precision}: {title}")
     if panels[0][0].lines:
-        panels[0][0].legend(fontsize=8, ncols=3)
+        panels[0][1].legend(*panels[0][0].get_legend_handles_labels(), fontsize=8, ncols=3, loc="upper left")
     for ax in panels[1]:
         ax.set_xlabel(AXES[axis])
     for ax in panels[:, 0]:

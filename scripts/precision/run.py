@@ -61,8 +61,9 @@ def main(arguments, build):
     sums = tables.summary(records)
     for axis in pictures.AXES:
         pictures.draw(records, axis, folder / f"{axis}.png")
+    numbered = [{**r, "id": int(r["id"].split(":")[0])} for r in records]
     page.write(folder / "stability.json", json.dumps({"points": len(questions), "summary": sums, "failures": failures,
-                                                      "records": records}))
+                                                      "ids": [q["id"] for q in questions], "records": numbered}))
     report(sums, failures, len(questions), list(pictures.AXES), folder)
     short = tables.markdown(*tables.short(sums))
     print(short, end="")

@@ -16,7 +16,7 @@ BUILD = ROOT / os.environ.get("BUILD", "build")
 sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "tests", "tests/reference")]
 from precision import exact, grid, measure  # noqa: E402
 
-COUNT = 40
+COUNT = 24
 
 
 class Stability(unittest.TestCase):

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * tabulated.c: any distribution of slopes, as a histogram: the data-driven black box of Section 4.5. P22 is constant in each
+ * cell; slopes in units of their root mean square; the histogram's mean slope is no business of this file (surface.c).
+ */
+#include "core/bsdf/tabulated.h"
+
+#include "core/bsdf/distribution.h"
+#include "core/bsdf/random.h"
+
+enum { LEFT, BOTTOM, PER_WIDTH, PER_HEIGHT, COLUMNS, ROWS, ROOT_XX, ROOT_XY, ROOT_YY }; /* in `shape` */
+
+typedef struct tabulated {
+    tabulated_grid grid;
+    real *density;     /* P22, row by row */
+    const float *away; /* H; float only */
+} tabulated;
+
+static inline real density(const base *b, const real u[3], real n2) {
+    const real *s = b->shape;
+    const real inverse = 1 / larger(u[2], REAL_MIN);
+    const real x = (u[0] * inverse - s[LEFT]) * s[PER_WIDTH],
+               y = (u[1] * inverse - s[BOTTOM]) * s[PER_HEIGHT];
+    if (!(x >= 0 && x < s[COLUMNS] && y >= 0 && y < s[ROWS])) return 0;
+    const tabulated *t = b->table;
+    const real p22 = t->density[(size_t)y * t->grid.columns + (size_t)x], t2 = n2 * inverse * inverse;
+    return p22 > 0 ? smaller(p22 * t2 * t2, REAL_MAX) : 0;
+}
+
+/* Lagrange's cubic through values at -1, 0, 1, 2. */
+static inline void cubic(float f, float c[4]) {
+    c[0] = -f * (f - 1) * (f - 2) / 6;
+    c[1] = (f + 1) * (f - 1) * (f - 2) / 2;
+    c[2] = -(f + 1) * f * (f - 2) / 2;
+    c[3] = (f + 1) * f * (f - 1) / 6;
+}
+
+static inline real z_lambda(const base *b, const real w[3]) {
+    const tabulated *t = b->table;
+#if MU_REAL_BITS == 53
+    return mu_tabulated_away(&t->grid, w);
+#else
+    const float *s = b->shape;
+    const float x = s[ROOT_XX] * w[0] + s[ROOT_XY] * w[1], y = s[ROOT_YY] * w[1], r = sqrtf(x * x + y * y);
+    if (!(r > 0)) return 0;
+    const float azimuth = (atan2f(y, x) * (float)(INV_PI / 2) + 0.5f) * TABULATED_AZIMUTHS;
+    const float height = w[2] / (w[2] + r) * TABULATED_HEIGHTS;
+    const int a = (int)azimuth, i = height < TABULATED_HEIGHTS - 1 ? (int)height : TABULATED_HEIGHTS - 1;
+    float ca[4], ch[4], sum = 0;
+    cubic(azimuth - (float)a, ca), cubic(height - (float)i, ch);
+    for (int k = 0; k < 4; k++) {
+        const float *h = t->away + ((a + k - 1) & (TABULATED_AZIMUTHS - 1)) * TABULATED_STRIDE + i;
+        sum += ca[k] * (ch[0] * h[0] + ch[1] * h[1] + ch[2] * h[2] + ch[3] * h[3]);
+    }
+    return larger(sum, 0) * (w[2] + r);
+#endif
+}
+
+/* 24 bits do not reach every place of a million cells: random ones follow. */
+static double extended(real u, random_stream *more) {
+    return MU_REAL_BITS == 53 ? (double)u : (double)u + 0x1p-24 * (double)random_next(more);
+}
+
+/* Where in n increasing sums, from 0 on, u of the last falls; the fraction of that step; never an empty one. */
+static size_t invert(const double *sums, size_t n, double u, double *fraction) {
+    const double target = u * sums[n];
+    size_t low = 0, high = n;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (sums[middle] > target)
+            high = middle;
+        else
+            low = middle;
+    }
+    while (low > 0 && !(sums[low + 1] > sums[low])) low--;
+    *fraction = fmin((target - sums[low]) / (sums[low + 1] - sums[low]), 1);
+    return low;
+}
+
+typedef struct place {
+    size_t column, row;
+    double p[2];
+} place;
+
+static void set_place(const tabulated_grid *g, place *at, double x, double y) {
+    at->p[0] = g->origin[0] + ((double)at->column + x) * g->cell[0];
+    at->p[1] = g->origin[1] + ((double)at->row + y) * g->cell[1];
+}
+
+/* A place by sums per row and of the rows. */
+static place draw(const tabulated_grid *g, const double *sums, const double *below, double u0, double u1) {
+    place at;
+    double x, y;
+    at.row = invert(below, g->rows, u1, &y);
+    at.column = invert(sums + at.row * (g->columns + 1), g->columns, u0, &x);
+    set_place(g, &at, x, y);
+    return at;
+}
+
+/* The normal at p. It stays within its cell however p is rounded: by that much at most, the cell's edge is left out. */
+static void normal_at(const base *b, const double p[2], real n[3]) {
+    const real *s = b->shape;
+    for (int k = 0; k < 2; k++) {
+        const double x = (p[k] - (double)s[LEFT + k]) * (double)s[PER_WIDTH + k],
+                     cells = (double)s[COLUMNS + k];
+        const double edge = cells * (MU_REAL_BITS == 24 ? 4 * FLT_EPSILON : 4 * DBL_EPSILON);
+        const double cell = fmin(fmax(floor(x), 0), cells - 1);
+        const double inside = fmin(fmax(x - cell, edge), 1 - edge);
+        n[k] = R((double)s[LEFT + k] + (cell + inside) / (double)s[PER_WIDTH + k]);
+    }
+    n[2] = 1;
+}
+
+static inline void sample_slope(const base *b, const real u[3], real n[3]) {
+    const tabulated_grid *g = &((const tabulated *)b->table)->grid;
+    random_stream more = random_start(u);
+    const double u0 = extended(u[0], &more), u1 = extended(u[1], &more);
+    normal_at(b, draw(g, g->mass, g->mass_below, u0, u1).p, n);
+}
+
+static double next(void *state) {
+    return extended(random_next(state), state);
+}
+
+/* The area that p shows, w.z + w.xy p, lies below w.z + |L^T w.xy| |L^-1 p|: a part with the density of D cos, and one with
+ * that times a bound of |L^-1 p| over the cell. Of what these propose, all is accepted from above, a third and so at the
+ * horizon (of a Gaussian: 0.32; it is E|t| / 2 sqrt 2 E|p| and less for coarse cells), nearly none from below. What 24
+ * tries leave over is drawn by inversion. */
+static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
+    const tabulated_grid *g = &((const tabulated *)b->table)->grid;
+    const double v[3] = {(double)w[0], (double)w[1], (double)w[2]};
+    const double r = hypot(g->root[0] * v[0] + g->root[1] * v[1], g->root[2] * v[1]);
+    const double first = fmax(v[2], 0), total = first + r * g->mean_reach;
+    random_stream more = random_start(u);
+    double u0 = extended(u[0], &more), u1 = extended(u[1], &more), pick = (double)u[2];
+    for (int k = 0; k < 24; k++) {
+        const int plain = pick * total < first;
+        const place at =
+            plain ? draw(g, g->mass, g->mass_below, u0, u1) : draw(g, g->reach, g->reach_below, u0, u1);
+        const size_t stride = g->columns + 1, i = at.row * stride + at.column;
+        const double reach = (g->reach[i + 1] - g->reach[i]) / (g->mass[i + 1] - g->mass[i]);
+        if (next(&more) * (first + r * reach) < v[2] + v[0] * at.p[0] + v[1] * at.p[1]) {
+            normal_at(b, at.p, n);
+            return;
+        }
+        u0 = next(&more), u1 = next(&more), pick = next(&more);
+    }
+    const double again[2] = {next(&more), next(&more)};
+    double p[2];
+    mu_tabulated_visible(g, v, again, next, &more, p);
+    normal_at(b, p, n);
+}
+
+static size_t padded(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
+}
+
+static size_t table_bytes(const mu_definition *d) {
+    return padded(sizeof(tabulated)) + padded(mu_tabulated_grid_bytes(d)) +
+           padded(d->histogram_columns * d->histogram_rows * sizeof(real)) +
+           (MU_REAL_BITS == 24 ? mu_tabulated_table_bytes() : 0);
+}
+
+static double prepare(base *b, const mu_definition *d, void *table) {
+    tabulated *t = table;
+    char *memory = (char *)table + padded(sizeof *t);
+    tabulated_grid *g = &t->grid;
+    mu_tabulated_grid_make(g, d, (double *)(void *)memory);
+    memory += padded(mu_tabulated_grid_bytes(d));
+    t->density = (real *)(void *)memory;
+    for (size_t j = 0; j < g->rows; j++)
+        for (size_t i = 0; i < g->columns; i++)
+            t->density[j * g->columns + i] = R(fmin(mu_tabulated_density(g, d, i, j), (double)REAL_MAX));
+    memory += padded(d->histogram_columns * d->histogram_rows * sizeof(real));
+    t->away = NULL;
+    if (MU_REAL_BITS == 24) {
+        mu_tabulated_table_build(g, (float *)(void *)memory);
+        t->away = (float *)(void *)memory;
+    }
+    for (int k = 0; k < 2; k++) {
+        b->shape[LEFT + k] = R(g->origin[k]);
+        b->shape[PER_WIDTH + k] = R(1 / g->cell[k]);
+    }
+    b->shape[COLUMNS] = R(g->columns), b->shape[ROWS] = R(g->rows);
+    for (int k = 0; k < 3; k++) b->shape[ROOT_XX + k] = R(g->root[k]);
+    b->table = table;
+    double mean[2], covariance[3];
+    mu_tabulated_moments(d, mean, covariance);
+    return mu_tabulated_spread(covariance);
+}
+
+enum { TRAITS = PICKS | ANISOTROPIC };
+
+#define DISTRIBUTION tabulated
+#include "core/bsdf/transformed.h"

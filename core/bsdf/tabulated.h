@@ -61,7 +61,7 @@ void mu_tabulated_visible(const tabulated_grid *grid, const double w[3], const d
                           double (*more)(void *state), void *state, double p[2]);
 
 /* The same area for float: a table over all directions above the horizon (tabulated_smith.c). */
-enum { TABULATED_AZIMUTHS = 512, TABULATED_HEIGHTS = 128, TABULATED_STRIDE = TABULATED_HEIGHTS + 3 };
+enum { TABULATED_AZIMUTHS = 256, TABULATED_HEIGHTS = 128, TABULATED_STRIDE = TABULATED_HEIGHTS + 3 };
 size_t mu_tabulated_table_bytes(void);
 void mu_tabulated_table_build(const tabulated_grid *grid, float *table);
 

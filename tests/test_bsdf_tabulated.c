@@ -334,6 +334,37 @@ static void extremes_stay_finite(void **state) {
     }
 }
 
+/* Blurred, it is GGX of its own covariance, twice that being alpha², and of the bound at least: seen along both axes. */
+static void blur_widens_the_narrow_axis_only(void **state) {
+    (void)state;
+    const double one = 1, half = sqrt(1.5); /* a cell's variance is a third of its half width squared */
+    mu_definition d =
+        tabulated_definition(&one, 1, 1, -0.02 * half, 0.02 * half, 0.1 - 0.4 * half, 0.1 + 0.4 * half);
+    mu_definition e = bsdf_definition(MU_GGX, 0.1, 2, 1, 0, 0, 0.25);
+    e.tilt[1] = 0.1 * 0.25; /* before the map that makes 0.4 of 0.1 */
+    tabulated_surfaces s = tabulated_make(&d, 0);
+    bsdf expected;
+    mu_closure_d c;
+    const double wo[3] = {0.48, 0.6, 0.64};
+    bsdf_bind_double(&expected, &e, wo);
+    assert_true(mu_bind_d(s.d, wo, NULL, &c));
+    const mu_closure_d before = c;
+    mu_blur_d(&c, 0.01); /* it is wide enough */
+    assert_ptr_equal(c.kernel, before.kernel);
+    assert_true(c.map.view[0] == before.map.view[0] && c.map.tilt[1] == before.map.tilt[1]);
+    for (int i = 0; i < 10; i++) {
+        mu_closure_d wide = c;
+        mu_value_d x, y;
+        double wi[3];
+        mu_blur_d(&wide, 0.1);
+        bsdf_direction(0.1 + 0.08 * i, i, wi);
+        mu_eval_d(&wide, wi, &x), mu_eval_d(&expected.d, wi, &y);
+        bsdf_near(x.f[0], y.f[0], tolerance);
+        bsdf_near(x.pdf, y.pdf, tolerance);
+    }
+    tabulated_free(&s);
+}
+
 static void refuses_what_is_no_histogram(void **state) {
     (void)state;
     mu_complaint why;
@@ -368,6 +399,7 @@ int main(void) {
                                        cmocka_unit_test(converges_to_ggx),
                                        cmocka_unit_test(float_follows_double),
                                        cmocka_unit_test(extremes_stay_finite),
+                                       cmocka_unit_test(blur_widens_the_narrow_axis_only),
                                        cmocka_unit_test(refuses_what_is_no_histogram)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,7 +155,13 @@ void MU(mu_blur)(closure *c, real alpha) {
         const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR],
                   full = c->kernel == c->kernel->plans[PLAN_FULL];
         const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;
-        if (!MU(map_widen)(&c->map, roughness, (double)alpha)) return;
+        map wide = c->map;
+        if (c->kernel->plans[PLAN_GENERAL] == kernels[MU_TABULATED]) {
+            const real *root = s->base.shape + TABULATED_ROOT;
+            MU(map_stand_for)(&wide, (const double[]){(double)root[0], (double)root[1], (double)root[2]});
+        }
+        if (!MU(map_widen)(&wide, roughness, (double)alpha)) return;
+        c->map = wide;
         c->kernel = full ? ggx->plans[PLAN_FULL] : ggx;
     }
     c->alpha = larger(c->alpha, alpha);

@@ -9,8 +9,6 @@
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/random.h"
 
-enum { LEFT, BOTTOM, PER_WIDTH, PER_HEIGHT, COLUMNS, ROWS, ROOT_XX, ROOT_XY, ROOT_YY }; /* in `shape` */
-
 typedef struct tabulated {
     tabulated_grid grid;
     real *density;     /* P22, row by row */
@@ -18,11 +16,11 @@ typedef struct tabulated {
 } tabulated;
 
 static inline real density(const base *b, const real u[3], real n2) {
-    const real *s = b->shape;
+    const real *origin = b->shape + TABULATED_ORIGIN, *per = b->shape + TABULATED_PER_CELL,
+               *cells = b->shape + TABULATED_CELLS;
     const real inverse = 1 / larger(u[2], REAL_MIN);
-    const real x = (u[0] * inverse - s[LEFT]) * s[PER_WIDTH],
-               y = (u[1] * inverse - s[BOTTOM]) * s[PER_HEIGHT];
-    if (!(x >= 0 && x < s[COLUMNS] && y >= 0 && y < s[ROWS])) return 0;
+    const real x = (u[0] * inverse - origin[0]) * per[0], y = (u[1] * inverse - origin[1]) * per[1];
+    if (!(x >= 0 && x < cells[0] && y >= 0 && y < cells[1])) return 0;
     const tabulated *t = b->table;
     const real p22 = t->density[(size_t)y * t->grid.columns + (size_t)x], t2 = n2 * inverse * inverse;
     return p22 > 0 ? smaller(p22 * t2 * t2, REAL_MAX) : 0;
@@ -41,8 +39,8 @@ static inline real z_lambda(const base *b, const real w[3]) {
 #if MU_REAL_BITS == 53
     return mu_tabulated_away(&t->grid, w);
 #else
-    const float *s = b->shape;
-    const float x = s[ROOT_XX] * w[0] + s[ROOT_XY] * w[1], y = s[ROOT_YY] * w[1], r = sqrtf(x * x + y * y);
+    const float *root = b->shape + TABULATED_ROOT;
+    const float x = root[0] * w[0] + root[1] * w[1], y = root[2] * w[1], r = sqrtf(x * x + y * y);
     if (!(r > 0)) return 0;
     const float azimuth = (atan2f(y, x) * (float)(INV_PI / 2) + 0.5f) * TABULATED_AZIMUTHS;
     const float height = w[2] / (w[2] + r) * TABULATED_HEIGHTS;
@@ -62,52 +60,16 @@ static double extended(real u, random_stream *more) {
     return MU_REAL_BITS == 53 ? (double)u : (double)u + 0x1p-24 * (double)random_next(more);
 }
 
-/* Where in n increasing sums, from 0 on, u of the last falls; the fraction of that step; never an empty one. */
-static size_t invert(const double *sums, size_t n, double u, double *fraction) {
-    const double target = u * sums[n];
-    size_t low = 0, high = n;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (sums[middle] > target)
-            high = middle;
-        else
-            low = middle;
-    }
-    while (low > 0 && !(sums[low + 1] > sums[low])) low--;
-    *fraction = fmin((target - sums[low]) / (sums[low + 1] - sums[low]), 1);
-    return low;
-}
-
-typedef struct place {
-    size_t column, row;
-    double p[2];
-} place;
-
-static void set_place(const tabulated_grid *g, place *at, double x, double y) {
-    at->p[0] = g->origin[0] + ((double)at->column + x) * g->cell[0];
-    at->p[1] = g->origin[1] + ((double)at->row + y) * g->cell[1];
-}
-
-/* A place by sums per row and of the rows. */
-static place draw(const tabulated_grid *g, const double *sums, const double *below, double u0, double u1) {
-    place at;
-    double x, y;
-    at.row = invert(below, g->rows, u1, &y);
-    at.column = invert(sums + at.row * (g->columns + 1), g->columns, u0, &x);
-    set_place(g, &at, x, y);
-    return at;
-}
-
 /* The normal at p. It stays within its cell however p is rounded: by that much at most, the cell's edge is left out. */
 static void normal_at(const base *b, const double p[2], real n[3]) {
     const real *s = b->shape;
     for (int k = 0; k < 2; k++) {
-        const double x = (p[k] - (double)s[LEFT + k]) * (double)s[PER_WIDTH + k],
-                     cells = (double)s[COLUMNS + k];
+        const double x = (p[k] - (double)s[TABULATED_ORIGIN + k]) * (double)s[TABULATED_PER_CELL + k],
+                     cells = (double)s[TABULATED_CELLS + k];
         const double edge = cells * (MU_REAL_BITS == 24 ? 4 * FLT_EPSILON : 4 * DBL_EPSILON);
         const double cell = fmin(fmax(floor(x), 0), cells - 1);
         const double inside = fmin(fmax(x - cell, edge), 1 - edge);
-        n[k] = R((double)s[LEFT + k] + (cell + inside) / (double)s[PER_WIDTH + k]);
+        n[k] = R((double)s[TABULATED_ORIGIN + k] + (cell + inside) / (double)s[TABULATED_PER_CELL + k]);
     }
     n[2] = 1;
 }
@@ -116,7 +78,7 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
     const tabulated_grid *g = &((const tabulated *)b->table)->grid;
     random_stream more = random_start(u);
     const double u0 = extended(u[0], &more), u1 = extended(u[1], &more);
-    normal_at(b, draw(g, g->mass, g->mass_below, u0, u1).p, n);
+    normal_at(b, mu_tabulated_draw(g, g->mass, g->mass_below, u0, u1).p, n);
 }
 
 static double next(void *state) {
@@ -136,8 +98,8 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
     double u0 = extended(u[0], &more), u1 = extended(u[1], &more), pick = (double)u[2];
     for (int k = 0; k < 24; k++) {
         const int plain = pick * total < first;
-        const place at =
-            plain ? draw(g, g->mass, g->mass_below, u0, u1) : draw(g, g->reach, g->reach_below, u0, u1);
+        const tabulated_place at = plain ? mu_tabulated_draw(g, g->mass, g->mass_below, u0, u1)
+                                         : mu_tabulated_draw(g, g->reach, g->reach_below, u0, u1);
         const size_t stride = g->columns + 1, i = at.row * stride + at.column;
         const double reach = (g->reach[i + 1] - g->reach[i]) / (g->mass[i + 1] - g->mass[i]);
         if (next(&more) * (first + r * reach) < v[2] + v[0] * at.p[0] + v[1] * at.p[1]) {
@@ -179,11 +141,11 @@ static double prepare(base *b, const mu_definition *d, void *table) {
         t->away = (float *)(void *)memory;
     }
     for (int k = 0; k < 2; k++) {
-        b->shape[LEFT + k] = R(g->origin[k]);
-        b->shape[PER_WIDTH + k] = R(1 / g->cell[k]);
+        b->shape[TABULATED_ORIGIN + k] = R(g->origin[k]);
+        b->shape[TABULATED_PER_CELL + k] = R(1 / g->cell[k]);
     }
-    b->shape[COLUMNS] = R(g->columns), b->shape[ROWS] = R(g->rows);
-    for (int k = 0; k < 3; k++) b->shape[ROOT_XX + k] = R(g->root[k]);
+    b->shape[TABULATED_CELLS] = R(g->columns), b->shape[TABULATED_CELLS + 1] = R(g->rows);
+    for (int k = 0; k < 3; k++) b->shape[TABULATED_ROOT + k] = R(g->root[k]);
     b->table = table;
     double mean[2], covariance[3];
     mu_tabulated_moments(d, mean, covariance);

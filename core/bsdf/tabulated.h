@@ -14,6 +14,13 @@
 #include "core/bsdf/musurf.h"
 
 enum { TABULATED_MOST = 1024 }; /* cells along one side */
+/* In a base's `shape`. */
+enum {
+    TABULATED_ORIGIN = 0,
+    TABULATED_PER_CELL = 2,
+    TABULATED_CELLS = 4, /* columns, rows */
+    TABULATED_ROOT = 6   /* grid.root */
+};
 
 typedef struct tabulated_grid {
     size_t columns, rows;  /* without the empty margins of the histogram */
@@ -52,6 +59,14 @@ half_plane mu_half_plane(const tabulated_grid *grid, const double k[3]);
 cut_cells mu_half_plane_row(const half_plane *h, const tabulated_grid *grid, size_t row);
 double mu_half_plane_cell(const half_plane *h,
                           double middle); /* mean over a cell, from the value at its middle */
+
+/* A place whose density is that of `sums` and `below`: of the mass, or the reach (tabulated_draw.c). */
+typedef struct tabulated_place {
+    size_t column, row;
+    double p[2];
+} tabulated_place;
+tabulated_place mu_tabulated_draw(const tabulated_grid *grid, const double *sums, const double *below,
+                                  double u0, double u1);
 
 /* z Lambda of w, exact: the part of the projected area that faces away (tabulated_smith.c). */
 double mu_tabulated_away(const tabulated_grid *grid, const double w[3]);

@@ -86,9 +86,9 @@ static double next(void *state) {
 }
 
 /* The area that p shows, w.z + w.xy p, lies below w.z + |L^T w.xy| |L^-1 p|: a part with the density of D cos, and one with
- * that times a bound of |L^-1 p| over the cell. Of what these propose, all is accepted from above, a third and so at the
- * horizon (of a Gaussian: 0.32; it is E|t| / 2 sqrt 2 E|p| and less for coarse cells), nearly none from below. What 24
- * tries leave over is drawn by inversion. */
+ * that times a bound of |L^-1 p| over the cell. All that these propose is accepted at the normal, 0.2 to 0.3 at the horizon
+ * (measured: Gaussian, GGX, noise, a narrow oblique ridge, ten cells; 16² to 1024² cells), less from below. What 24 tries leave
+ * over is drawn by inversion, which costs as much as some ten tries for 16² cells, and a hundred for 256². */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     const tabulated_grid *g = &((const tabulated *)b->table)->grid;
     const double v[3] = {(double)w[0], (double)w[1], (double)w[2]};

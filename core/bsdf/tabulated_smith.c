@@ -7,7 +7,9 @@
  * covariance of p), |v| is the standard deviation of w.xy p, and the table is of H in
  *     z Lambda = (w.z + |v|) H(azimuth of v, w.z / (w.z + |v|)),
  * uniform in both: however long, narrow or oblique the histogram, its own width decides where the nodes lie. Cubic (Lagrange)
- * between 4 x 4 nodes.
+ * between 4 x 4 nodes. Measured over all directions, relative to sigma: 3e-5 for smooth histograms of 2² to 16² cells and for noise,
+ * 8e-6 of 64², 2e-6 of 256²; 3e-3 where ten cells of 256² hold everything, whose masking has sharper creases than any table. Where the
+ * mean slope turns nearly all away from the viewer, that much of cos, not of sigma.
  */
 #include "core/bsdf/tabulated.h"
 

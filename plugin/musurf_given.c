@@ -42,11 +42,9 @@ static musurf_result check_choice(const given *g, const musurf_param *p, const m
                        s->text, known);
 }
 
-static musurf_result check_numbers(const given *g, const musurf_param *p, const musurf_setting *s) {
-    if (!COVERS(s, values) || !s->values)
-        return musurf_fail(g->host, MUSURF_INVALID, p->id, "takes numbers, not a word");
-    for (size_t i = 0; i < numbers_of(p->kind); i++) {
-        const double x = s->values[i];
+static musurf_result check_range(const given *g, const musurf_param *p, const double *values, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const double x = values[i];
         const int low = p->flags & MUSURF_MIN_EXCLUDED ? x > p->min : x >= p->min;
         const int high = p->flags & MUSURF_MAX_EXCLUDED ? x < p->max : x <= p->max;
         if (!(fabs(x) <= DBL_MAX))
@@ -61,6 +59,33 @@ static musurf_result check_numbers(const given *g, const musurf_param *p, const 
                            p->min, p->max, close);
     }
     return MUSURF_OK;
+}
+
+/* Columns, rows, four bounds, the cells: what the core will think of them is its own business. */
+static musurf_result check_grid(const given *g, const musurf_param *p, const musurf_setting *s) {
+    const double most = 65536;
+    const size_t count = COVERS(s, count) ? s->count : 0;
+    if (count < 6)
+        return musurf_fail(g->host, MUSURF_INVALID, p->id,
+                           "is a grid of %zu numbers: columns, rows and four bounds come first", count);
+    const double columns = s->values[0], rows = s->values[1];
+    if (!(columns >= 1 && columns <= most && rows >= 1 && rows <= most && columns == floor(columns) &&
+          rows == floor(rows)))
+        return musurf_fail(g->host, MUSURF_INVALID, p->id, "cannot have %g columns and %g rows", columns,
+                           rows);
+    if (columns * rows != (double)(count - 6))
+        return musurf_fail(g->host, MUSURF_INVALID, p->id, "of %g columns and %g rows has %zu cells", columns,
+                           rows, count - 6);
+    for (int i = 2; i < 6; i++)
+        if (!(fabs(s->values[i]) <= DBL_MAX))
+            return musurf_fail(g->host, MUSURF_INVALID, p->id, "has the bound %g", s->values[i]);
+    return check_range(g, p, s->values + 6, count - 6);
+}
+
+static musurf_result check_numbers(const given *g, const musurf_param *p, const musurf_setting *s) {
+    if (!COVERS(s, values) || !s->values)
+        return musurf_fail(g->host, MUSURF_INVALID, p->id, "takes numbers, not a word");
+    return p->kind == MUSURF_GRID ? check_grid(g, p, s) : check_range(g, p, s->values, numbers_of(p->kind));
 }
 
 musurf_result musurf_gather(given *g, const musurf_setting *settings, size_t count) {

@@ -14,13 +14,26 @@
 enum { ALIGNMENT = 64 };
 
 static int is_mirror(const mu_definition *d) {
-    return d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG);
+    return d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG && d->ndf != MU_TABULATED);
+}
+
+/* The spread of the slopes, which is their unit, lies between a cell's and the whole of it. */
+static int histogram_in_float(const parsed *p) {
+    const mu_definition *d = &p->definition;
+    const double *b = d->histogram_bounds, x = b[1] - b[0], y = b[3] - b[2];
+    const double least = hypot(x / (double)d->histogram_columns, y / (double)d->histogram_rows) / 4,
+                 most = hypot(fmax(fabs(b[0]), fabs(b[1])) + fabs(d->tilt[0]),
+                              fmax(fabs(b[2]), fabs(b[3])) + fabs(d->tilt[1]));
+    const double scale = sqrt(mu_transform_determinant(d->transform));
+    return least >= 0x1p-30 && most <= 0x1p30 && most < 0x1p30 * least &&
+           (p->varying || (scale > 0x1p-60 && scale < 0x1p60));
 }
 
 /* Float shading holds slope widths down to here (a large gamma narrows gtr) and constant M up to this scale;
  * beyond, D overflows, or the table would. */
 static int float_suffices(const parsed *p) {
     const mu_definition *d = &p->definition;
+    if (d->ndf == MU_TABULATED) return histogram_in_float(p);
     const double width = d->ndf == MU_GTR     ? d->alpha / sqrt(fmax(1, d->gamma))
                          : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
                          : d->ndf == MU_SHEEN ? sqrt(1 + 0.5 / d->alpha)
@@ -41,7 +54,8 @@ static const char *transform_class(const parsed *p) {
 /* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
     const mu_definition *d = &p->definition;
-    return p->varying || d->tilt[0] != 0 || d->tilt[1] != 0 || !mu_transform_is_similarity(d->transform);
+    return p->varying || d->ndf == MU_TABULATED || d->tilt[0] != 0 || d->tilt[1] != 0 ||
+           !mu_transform_is_similarity(d->transform);
 }
 
 static void append(char *text, size_t size, const char *more) {
@@ -57,7 +71,7 @@ static void name_plan(musurf_material *m, const char *surface) {
              m->in_float ? "" : ", double precision");
     if (p->definition.fresnel == MU_FRESNEL_NONE) append(m->left_out, sizeof m->left_out, "fresnel");
     if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
-    if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0)
+    if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0 && p->definition.ndf != MU_TABULATED)
         append(m->left_out, sizeof m->left_out, "tilt");
     if (!p->varying) append(m->left_out, sizeof m->left_out, "slots");
     if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
@@ -98,6 +112,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     }
     m->in_double = mu_surface_make_d(&p.definition, (char *)m + head);
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
+    m->parsed.definition.histogram = NULL; /* the host's */
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
     const int mirror = is_mirror(&p.definition);
     m->lobes = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;

@@ -8,8 +8,8 @@
 
 #include "plugin/musurf_parameters.h"
 
-static const char *const ndf_choices[] = {"ggx",   "beckmann", "gtr",       "std", "phong",
-                                          "sheen", "flat",     "ellipsoid", NULL};
+static const char *const ndf_choices[] = {"ggx",   "beckmann", "gtr",       "std",       "phong",
+                                          "sheen", "flat",     "ellipsoid", "tabulated", NULL};
 static const char *const anisotropy_choices[] = {"none", "disney",     "cycles", "openpbr",
                                                  "gltf", "covariance", NULL};
 static const char *const masking_choices[] = {"separable", "height_correlated", "direction_correlated", NULL};
@@ -25,7 +25,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "Distribution of microfacet normals: ggx, beckmann; gtr and std (Student-t), whose tail is gamma; "
      "phong, by its "
      "exponent; sheen (cloth), whose alpha is its r; ellipsoid, which may be tilted; flat: a mirror or a "
-     "pane.",
+     "pane; tabulated: any slopes, by histogram.",
      "",
      MUSURF_CHOICE,
      0,
@@ -371,6 +371,19 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      0,
      0,
      1,
+     0,
+     1,
+     {0},
+     NUMBERS},
+    {HEAD(31, "histogram", "Histogram"),
+     "Of tabulated: how often each slope (dz/dx, dz/dy) is met, in cells between bounds; only proportions "
+     "count. Its mean "
+     "slope adds to tilt.",
+     "",
+     MUSURF_GRID,
+     MUSURF_NO_DEFAULT,
+     0,
+     INFINITY,
      0,
      1,
      {0},

@@ -39,6 +39,7 @@ enum {
     THETA_Z,
     MASKING,
     TRANSMISSION,
+    HISTOGRAM,
     PARAMETER_END
 };
 enum { PARAMETER_COUNT = PARAMETER_END - 1 };

@@ -55,6 +55,7 @@ static musurf_result judge(const given *g, const mu_definition *d) {
                       {"exponent", EXPONENT},
                       {"transform", TRANSFORM},
                       {"tilt", TILT},
+                      {"histogram", HISTOGRAM},
                       {"transmission", TRANSMISSION},
                       {"schlick", SCHLICK},
                       {"dielectric", DIELECTRIC},

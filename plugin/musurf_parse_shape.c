@@ -10,7 +10,10 @@
 
 #include "plugin/musurf_given.h"
 
-enum { ELLIPSOID = MU_NDF_COUNT }; /* the choice after the core's own */
+/* The core's distributions by the order of the choices. */
+static const mu_ndf ndf_of[] = {MU_GGX,   MU_BECKMANN, MU_GTR, MU_STD,      MU_PHONG,
+                                MU_SHEEN, MU_FLAT,     MU_GGX, MU_TABULATED};
+enum { ELLIPSOID = 7 };
 
 /* The first of these that is set, to something other than 0; or 0. */
 static int any(const given *g, const uint32_t *ids) {
@@ -68,6 +71,21 @@ static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[
         : g->by_id[ALPHA_X] ? ALPHA_X
                             : ALPHA,
         "makes a singular A: an ellipsoid has three axes, and no normal of the surface lies in its plane");
+}
+
+/* The histogram, which stays with the host: it is read while the surface is made. */
+static musurf_result parse_histogram(const given *g, mu_definition *d) {
+    const musurf_setting *s = g->by_id[HISTOGRAM];
+    if (d->ndf != MU_TABULATED)
+        return s ? misplaced(g, HISTOGRAM, "belongs to ndf \"tabulated\", but ndf is another") : MUSURF_OK;
+    if (!s) return misplaced(g, NDF, "\"tabulated\" needs a histogram");
+    const int foreign = any(g, (const uint32_t[]){ALPHA, ROUGHNESS, ALPHA_X, ALPHA_Y, GLTF, COVARIANCE, 0});
+    if (foreign)
+        return misplaced(g, foreign, "has no meaning here: the histogram tells how rough the surface is");
+    d->histogram_columns = (size_t)s->values[0], d->histogram_rows = (size_t)s->values[1];
+    memcpy(d->histogram_bounds, s->values + 2, sizeof d->histogram_bounds);
+    d->histogram = s->values + 6;
+    return MUSURF_OK;
 }
 
 /* alpha_x, alpha_y, or the anisotropy of another system (musurf.h), turned by rotation. */
@@ -140,7 +158,9 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     musurf_result result = parse_alpha(g, d);
     if (result != MUSURF_OK) return result;
     const int ndf = musurf_choice(g, NDF);
-    if (ndf != ELLIPSOID) d->ndf = (mu_ndf)ndf;
+    d->ndf = ndf_of[ndf];
+    result = parse_histogram(g, d);
+    if (result != MUSURF_OK) return result;
     result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, m) : parse_anisotropy(g, d, m);
     if (result != MUSURF_OK) return result;
 

@@ -8,8 +8,8 @@
  *     const musurf_material_type *type = plugin->types[0];
  *
  *     const double alpha = 0.2, m[4] = {5, 0, 0, 1};                  // rows [a c], [b d]: 5x stretch along x
- *     musurf_setting set[2] = {{sizeof set[0], alpha_id, MUSURF_CONSTANT, 0, &alpha, NULL},
- *                              {sizeof set[0], transform_id, MUSURF_CONSTANT, 0, m, NULL}};
+ *     musurf_setting set[2] = {{sizeof set[0], alpha_id, MUSURF_CONSTANT, 0, &alpha, NULL, 0},
+ *                              {sizeof set[0], transform_id, MUSURF_CONSTANT, 0, m, NULL, 0}};
  *     musurf_material *material;
  *     if (type->compile(&host, set, 2, &material) != MUSURF_OK) ...    // once; then shared by all threads
  *
@@ -93,13 +93,16 @@ typedef struct musurf_host {
 
 typedef uint32_t musurf_kind;
 enum {
-    MUSURF_NUMBER = 1, /* one double */
-    MUSURF_COLOR = 2,  /* three doubles: linear RGB */
-    MUSURF_MATRIX = 3, /* four doubles: the two rows of a 2x2 map of tangent-plane positions */
-    MUSURF_CHOICE = 4, /* text: one of `choices` */
-    MUSURF_FLAG = 5,   /* one double: 0 or 1 */
-    MUSURF_VECTOR = 6, /* two doubles: x and y in the tangent plane */
-    MUSURF_MATRIX3 = 7 /* nine doubles: the three rows of a 3x3 matrix */
+    MUSURF_NUMBER = 1,  /* one double */
+    MUSURF_COLOR = 2,   /* three doubles: linear RGB */
+    MUSURF_MATRIX = 3,  /* four doubles: the two rows of a 2x2 map of tangent-plane positions */
+    MUSURF_CHOICE = 4,  /* text: one of `choices` */
+    MUSURF_FLAG = 5,    /* one double: 0 or 1 */
+    MUSURF_VECTOR = 6,  /* two doubles: x and y in the tangent plane */
+    MUSURF_MATRIX3 = 7, /* nine doubles: the three rows of a 3x3 matrix */
+    MUSURF_GRID =
+        8 /* columns, rows, x_min, x_max, y_min, y_max, and a number per cell, row by row from (x_min,
+                         * y_min) on; the parameter's range is that of the cells. The setting's `count` tells how many */
 };
 
 enum {
@@ -144,6 +147,7 @@ typedef struct musurf_setting {
     uint32_t slot;        /* index of the first float; the kind tells how many follow */
     const double *values; /* read during compile only */
     const char *text;     /* read during compile only */
+    size_t count;         /* doubles in `values`; may be 0 but for MUSURF_GRID, whose kind does not tell */
 } musurf_setting;
 
 /* ----------------------------------------------------------------------------------------------- lobes */

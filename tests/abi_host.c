@@ -98,7 +98,8 @@ void abi_settings_read(abi_settings *settings, const musurf_material_type *type,
             setting->text = value;
         } else {
             setting->values = values;
-            for (int i = 0; i < 9 && *value; i++, value += *value == ',') values[i] = strtod(value, &value);
+            for (int i = 0; i < ABI_VALUES && *value; i++, value += *value == ',', setting->count++)
+                values[i] = strtod(value, &value);
         }
     }
 }
@@ -128,6 +129,7 @@ const char *abi_words(const musurf_material_type *type, int index) {
         "ndf=gtr alpha=0.2 gamma=0 transform=20,0,0,20 fresnel=schlick fresnel.schlick=0.04,0.5,1",
         "ndf=ggx alpha=0 fresnel=conductor fresnel.conductor=Au",
         "ndf=beckmann alpha=0.3 sampler=ndf stretch=0.5",
+        "ndf=tabulated histogram=3,2,-0.8,1,-0.5,0.9,1,2,0.5,0,3,1 transform=1,0.5,-0.2,0.8",
         "ndf=gtr alpha=0.2 gamma=1.3 transform=@2",
         NULL};
     return strcmp(type->id, "template.lambert") ? microfacet[index] : lambert[index];

@@ -37,11 +37,11 @@ void abi_host_start(abi_host *host);
 
 /* Settings from words: "ndf=gtr alpha=0.2 transform=1,2,0,1"; "alpha=@3" takes alpha from slot 3. Aborts the
  * test on a name that the table does not have. Returns the number of settings. */
-enum { ABI_SETTINGS = 16 };
+enum { ABI_SETTINGS = 16, ABI_VALUES = 16 };
 typedef struct abi_settings {
     musurf_setting setting[ABI_SETTINGS];
     size_t count;
-    double values[ABI_SETTINGS][9];
+    double values[ABI_SETTINGS][ABI_VALUES];
     char text[1024];
 } abi_settings;
 void abi_settings_read(abi_settings *settings, const musurf_material_type *type, const char *words);

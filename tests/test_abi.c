@@ -43,7 +43,7 @@ static void tables_are_sound(void **state) {
                 assert_int_not_equal(param->id, param_at(type, j)->id);
                 assert_string_not_equal(param->name, param_at(type, j)->name);
             }
-            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_MATRIX3);
+            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_GRID);
             if (param->kind == MUSURF_CHOICE) {
                 assert_non_null(param->choices);
                 int found = 0;
@@ -83,18 +83,38 @@ static void refuses(const musurf_material_type *type, const musurf_setting *sett
     assert_null(material);
 }
 
+/* Two columns and one row: each number wrong in its own way, and a count that is not that of the grid. */
+static void wrong_grids_are_refused(const musurf_material_type *type, const musurf_param *param) {
+    static const double good[8] = {2, 1, -1, 1, -1, 1, 0.5, 0.5};
+    static const double wrong[][2] = {{0, 0},   {0, 1},        {0, 1.5}, {0, 1e300}, {1, 3},       {1, NAN},
+                                      {2, NAN}, {5, INFINITY}, {7, NAN}, {6, -1},    {6, INFINITY}};
+    double values[8];
+    musurf_setting setting = {sizeof setting, param->id, MUSURF_CONSTANT, 0, values, NULL, 8};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        memcpy(values, good, sizeof values);
+        values[(size_t)wrong[i][0]] = wrong[i][1];
+        refuses(type, &setting, 1, MUSURF_INVALID, param->id);
+    }
+    memcpy(values, good, sizeof values);
+    for (setting.count = 0; setting.count < 8; setting.count++)
+        refuses(type, &setting, 1, MUSURF_INVALID, param->id);
+    setting.count = 8,
+    setting.size = (uint32_t)offsetof(musurf_setting, count); /* a host that cannot say how many */
+    refuses(type, &setting, 1, MUSURF_INVALID, param->id);
+}
+
 static void wrong_settings_are_refused_by_name(void **state) {
     (void)state;
     for (int t = 0; t < ABI_TYPES; t++) {
         const musurf_material_type *type = abi_type(t);
         const double one = 1;
-        refuses(type, &(musurf_setting){sizeof(musurf_setting), 987654, MUSURF_CONSTANT, 0, &one, NULL}, 1,
+        refuses(type, &(musurf_setting){sizeof(musurf_setting), 987654, MUSURF_CONSTANT, 0, &one, NULL, 0}, 1,
                 MUSURF_INVALID, 987654);
         for (uint32_t i = 0; i < type->param_count; i++) {
             const musurf_param *param = param_at(type, i);
             double bad[9];
             for (int k = 0; k < 9; k++) bad[k] = NAN;
-            musurf_setting setting = {sizeof setting, param->id, MUSURF_CONSTANT, 0, NULL, NULL};
+            musurf_setting setting = {sizeof setting, param->id, MUSURF_CONSTANT, 0, NULL, NULL, 0};
             refuses(type, &setting, 1, MUSURF_INVALID, param->id); /* neither values nor text */
             setting.source = 77;
             refuses(type, &setting, 1, MUSURF_INVALID, param->id);
@@ -107,6 +127,10 @@ static void wrong_settings_are_refused_by_name(void **state) {
                 continue;
             }
             setting.text = NULL;
+            if (param->kind == MUSURF_GRID) {
+                wrong_grids_are_refused(type, param);
+                continue;
+            }
             setting.values = bad;
             refuses(type, &setting, 1, MUSURF_INVALID, param->id);
             memset(bad, 0, sizeof bad);
@@ -152,7 +176,7 @@ static void hosts_of_any_size_work(void **state) {
             assert_int_equal(type->compile((const musurf_host *)(const void *)bytes, NULL, 0, &material),
                              MUSURF_OK);
             assert_int_equal(host.allocations > 0, sizes[i] >= 40); /* half a pair of functions is none */
-            const musurf_setting unknown = {sizeof unknown, 987654, 0, 0, NULL, NULL};
+            const musurf_setting unknown = {sizeof unknown, 987654, 0, 0, NULL, NULL, 0};
             musurf_material *none;
             assert_int_equal(type->compile((const musurf_host *)(const void *)bytes, &unknown, 1, &none),
                              MUSURF_INVALID);
@@ -165,17 +189,19 @@ static void hosts_of_any_size_work(void **state) {
     }
 }
 
-static void settings_of_a_later_header_work(void **state) {
+static void settings_of_another_header_work(void **state) {
     (void)state;
     for (int t = 0; t < ABI_TYPES; t++) {
         const musurf_material_type *type = abi_type(t);
         abi_settings now;
         abi_settings_read(&now, type, t ? "ndf=gtr alpha=0.25 gamma=1.5" : "reflectance=0.2,0.3,0.4");
-        for (uint32_t size = sizeof(musurf_setting); size <= 80; size += 8) {
+        /* and of an earlier one, without `count` */
+        for (uint32_t size = (uint32_t)offsetof(musurf_setting, count); size <= 80; size += 8) {
             char *bytes = abi_guarded(size * now.count);
             memset(bytes, 0xff, size * now.count);
             for (size_t i = 0; i < now.count; i++) {
-                memcpy(bytes + i * size, &now.setting[i], sizeof now.setting[i]);
+                memcpy(bytes + i * size, &now.setting[i],
+                       size < sizeof now.setting[i] ? size : sizeof now.setting[i]);
                 memcpy(bytes + i * size, &size, sizeof size);
             }
             abi_host host;
@@ -235,7 +261,7 @@ int main(void) {
         cmocka_unit_test(tables_are_sound),
         cmocka_unit_test(wrong_settings_are_refused_by_name),
         cmocka_unit_test(hosts_of_any_size_work),
-        cmocka_unit_test(settings_of_a_later_header_work),
+        cmocka_unit_test(settings_of_another_header_work),
         cmocka_unit_test(plans_are_written_no_further_than_their_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

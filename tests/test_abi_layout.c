@@ -27,9 +27,10 @@ static void cold_structs_have_golden_layouts(void **state) {
     AT(musurf_param, min, 48), AT(musurf_param, max, 56), AT(musurf_param, soft_min, 64);
     AT(musurf_param, soft_max, 72), AT(musurf_param, initial, 80), AT(musurf_param, initial_choice, 112);
     AT(musurf_param, choices, 120);
-    assert_int_equal(sizeof(musurf_setting), 32);
+    assert_int_equal(sizeof(musurf_setting), 40);
     AT(musurf_setting, size, 0), AT(musurf_setting, param, 4), AT(musurf_setting, source, 8);
     AT(musurf_setting, slot, 12), AT(musurf_setting, values, 16), AT(musurf_setting, text, 24);
+    AT(musurf_setting, count, 32);
     assert_int_equal(sizeof(musurf_plan), 48);
     AT(musurf_plan, size, 0), AT(musurf_plan, closure_bytes, 4), AT(musurf_plan, closure_alignment, 8);
     AT(musurf_plan, lobes, 12), AT(musurf_plan, needs, 16), AT(musurf_plan, slot_floats, 20);
@@ -95,6 +96,7 @@ static void named_numbers_keep_their_values(void **state) {
                                   {MUSURF_FLAG, 5},
                                   {MUSURF_VECTOR, 6},
                                   {MUSURF_MATRIX3, 7},
+                                  {MUSURF_GRID, 8},
                                   {MUSURF_MAY_VARY, 1},
                                   {MUSURF_MIN_EXCLUDED, 2},
                                   {MUSURF_MAX_EXCLUDED, 4},

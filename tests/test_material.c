@@ -176,16 +176,24 @@ static void test_the_table_keeps_its_word(void **state) {
         if (!type) fail_msg("%s", error.text);
         for (uint32_t i = 0; i < type->param_count; i++) {
             const musurf_param *p = mu_type_param(type, i);
-            musurf_setting setting = {sizeof setting,   p->id, MUSURF_CONSTANT, 0, p->initial,
-                                      p->initial_choice};
+            musurf_setting setting = {sizeof setting,    p->id, MUSURF_CONSTANT, 0, p->initial,
+                                      p->initial_choice, 0};
             const musurf_host host = {.size = sizeof host};
             musurf_material *material = NULL;
-            if (strchr(p->name, '.') || (p->flags & MUSURF_NO_DEFAULT)) continue; /* has a meaning only beside its choice */
+            if (strchr(p->name, '.') || (p->flags & MUSURF_NO_DEFAULT))
+                continue; /* has a meaning only beside its choice */
             if (type->compile(&host, &setting, 1, &material) != MUSURF_OK) fail_msg("default of %s", p->name);
             type->release(material);
             for (const char *const *c = p->choices; p->kind == MUSURF_CHOICE && *c; c++) {
+                static const double grid[7] = {1, 1, -1, 1, -1, 1, 1};
+                const musurf_param *const histogram = mu_type_find(type, "histogram");
                 setting.text = *c;
-                if (type->compile(&host, &setting, 1, &material) != MUSURF_OK)
+                musurf_setting both[2] = {setting, setting}; /* a histogram has no default */
+                const size_t count = strcmp(*c, "tabulated") == 0 && histogram ? 2 : 1;
+                if (count == 2)
+                    both[1] = (musurf_setting){
+                        .size = sizeof setting, .param = histogram->id, .values = grid, .count = 7};
+                if (type->compile(&host, both, count, &material) != MUSURF_OK)
                     fail_msg("%s of %s", *c, p->name);
                 type->release(material);
             }

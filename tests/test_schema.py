@@ -13,7 +13,9 @@ from command import answers, musurf, strict
 # What only a plugin can judge, by parameters together; the schema cannot say it.
 BEYOND_A_SCHEMA = ("not both", "needs both n and k", "is singular", "is defined for", "belongs to the ellipsoid",
                    "an ellipsoid has", "A says all", "all three above 0", "a singular A", "is symmetric", "positive definite",
-                   "needs alpha above 0", "needs a dielectric", "needs the visible sampler")
+                   "needs alpha above 0", "needs a dielectric", "needs the visible sampler", "needs a histogram",
+                   "belongs to ndf", "has no meaning here", "all weights are 0", "is not a row of", "but weights has",
+                   "x_min, x_max, y_min, y_max: the second", "cannot be read as an OpenEXR image", "at least 1e-30 wide")
 
 
 def valid(schema, value):
@@ -21,7 +23,8 @@ def valid(schema, value):
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     checks = {
         "type": lambda t: {"number": number, "boolean": isinstance(value, bool), "array": isinstance(value, list),
-                           "object": isinstance(value, dict)}[t],
+                           "object": isinstance(value, dict), "string": isinstance(value, str),
+                           "integer": number and isinstance(value, int)}[t],
         "const": lambda c: value == c,
         "enum": lambda e: isinstance(value, str) and value in e,
         "minimum": lambda m: not number or value >= m,
@@ -54,6 +57,10 @@ def example(schema, rng):
     kind = schema["type"]
     if kind == "boolean":
         return rng.random() < 0.5
+    if kind == "string":
+        return rng.choice(["there/is/none.exr", "x"])
+    if kind == "integer":
+        return rng.randint(schema["minimum"], min(schema["maximum"], schema["minimum"] + 3))
     if kind == "array":
         return [example(schema["items"], rng) for _ in range(schema["minItems"])]
     if kind == "object":

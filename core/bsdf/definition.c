@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* definition.c: what a surface may be, and what to say when it may not. */
 #include "core/bsdf/real.h"
+#include "core/bsdf/tabulated.h"
 #include <stdio.h>
 
 #if MU_REAL_BITS == 53
@@ -54,7 +55,39 @@ static int check_transmission(const mu_definition *d, mu_complaint *why) {
     return !why->text[0];
 }
 
+static int refuse(mu_complaint *why, const char *field, const char *text) {
+    why->field = field;
+    snprintf(why->text, sizeof why->text, "%s", text);
+    return 0;
+}
+
+static int check_histogram(const mu_definition *d, mu_complaint *why) {
+    const size_t sides[2] = {d->histogram_columns, d->histogram_rows};
+    const double *b = d->histogram_bounds;
+    if (!d->histogram) return refuse(why, "histogram", "tabulated needs a histogram of slopes");
+    for (int i = 0; i < 2; i++) {
+        const double low = b[2 * i], high = b[2 * i + 1];
+        if (!(sides[i] >= 1 && sides[i] <= TABULATED_MOST))
+            return complain(why, "histogram", (double)sides[i], "a side has from 1 to 1024 cells");
+        if (!(fabs(low) <= 1e30 && fabs(high) <= 1e30 && high > low))
+            return complain(why, "histogram", high,
+                            "bounds are at most 1e30, and the upper one is the larger");
+        /* else not even a double could tell the cells apart */
+        if (!((high - low) / (double)sides[i] >= fmax(1e-30, 1e-12 * fmax(fabs(low), fabs(high)))))
+            return complain(why, "histogram", (high - low) / (double)sides[i],
+                            "a cell is at least 1e-30 wide, and 1e-12 of the largest slope");
+    }
+    double largest = 0;
+    for (size_t i = 0; i < sides[0] * sides[1]; i++) {
+        if (!(d->histogram[i] >= 0 && d->histogram[i] <= DBL_MAX))
+            return complain(why, "histogram", d->histogram[i], "a weight is finite and at least 0");
+        largest = fmax(largest, d->histogram[i]);
+    }
+    return largest > 0 ? 1 : refuse(why, "histogram", "all weights are 0: one at least must be larger");
+}
+
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
+    if (d->ndf == MU_TABULATED && !check_histogram(d, why)) return 0;
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
         return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
     if (d->ndf == MU_CUSTOM && !d->custom_f && !d->custom_d) {

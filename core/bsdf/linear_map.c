@@ -121,3 +121,16 @@ int MU(map_widen)(map *m, double base, double alpha) {
                             mean[0] * inverse[1] + mean[1] * inverse[3]};
     return MU(map_make)(m, inverse, tilt, 1);
 }
+
+/* V = sqrt(2) L^T s M^-1 in place of s M^-1; the tilt is measured against it. */
+void MU(map_stand_for)(map *m, const double root[3]) {
+    const double x = sqrt(2) * root[0], y = sqrt(2) * root[1], z = sqrt(2) * root[2];
+    for (int i = 0; i < 2; i++) {
+        const double first = (double)m->view[i], second = (double)m->view[2 + i];
+        m->view[i] = R(x * first + y * second);
+        m->view[2 + i] = R(z * second);
+    }
+    const double tilt = (double)m->tilt[0] / x;
+    m->tilt[1] = R(((double)m->tilt[1] - y * tilt) / z);
+    m->tilt[0] = R(tilt);
+}

@@ -28,6 +28,10 @@ int MU(map_make)(map *out, const double m[4], const double tilt[2], double unit)
  * `alpha`; 1 if it did, and then the map is that of roughness 1. The mean slope stays. */
 int MU(map_widen)(map *m, double base, double alpha);
 
+/* The map as a surface of roughness 1 has to have it to stand for one whose slopes have the covariance L L^T, L = [root[0]
+ * 0; root[1] root[2]] in slope units: a Gaussian's alpha² is twice its variance. To be widened: its normals are not set. */
+void MU(map_stand_for)(map *m, const double root[3]);
+
 /* What a kernel was compiled for. */
 typedef enum plan_kind {
     PLAN_GENERAL, /* any M */

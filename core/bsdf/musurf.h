@@ -37,13 +37,14 @@ extern "C" {
 #endif
 
 typedef enum mu_ndf {
-    MU_GGX,      /* Trowbridge & Reitz 1975 */
-    MU_BECKMANN, /* Gaussian slopes */
-    MU_GTR,      /* generalised Trowbridge-Reitz, Burley 2012, of tail gamma */
-    MU_STD,      /* Student-t distribution, Ribardiere et al. 2017, of tail gamma */
-    MU_PHONG,    /* D = (n + 2) cos^n / 2 pi */
-    MU_SHEEN,    /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
-    MU_FLAT,     /* no microfacets: a mirror or a pane */
+    MU_GGX,       /* Trowbridge & Reitz 1975 */
+    MU_BECKMANN,  /* Gaussian slopes */
+    MU_GTR,       /* generalised Trowbridge-Reitz, Burley 2012, of tail gamma */
+    MU_STD,       /* Student-t distribution, Ribardiere et al. 2017, of tail gamma */
+    MU_PHONG,     /* D = (n + 2) cos^n / 2 pi */
+    MU_SHEEN,     /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
+    MU_FLAT,      /* no microfacets: a mirror or a pane */
+    MU_TABULATED, /* a histogram of slopes */
     MU_NDF_COUNT,
     MU_CUSTOM = 1000 /* a distribution that is not of this library: custom_f, custom_d */
 } mu_ndf;
@@ -80,6 +81,12 @@ typedef struct mu_definition {
     double tilt[2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; seed 001's theta_x, theta_y */
     mu_sampler sampler;
     mu_masking_form masking;
+    /* Of MU_TABULATED, instead of alpha: how often which slope (dz/dx, dz/dy) is met, on a grid over x_min ... x_max, y_min
+     * ... y_max, row by row from y_min on, each from x_min on. P22 is constant in each cell; only proportions matter. A
+     * normal m has the slope -m.xy / m.z. The mean slope adds to `tilt`. Read while a surface is made, not after. */
+    const double *histogram;
+    size_t histogram_columns, histogram_rows; /* 1 ... 1024 */
+    double histogram_bounds[4];               /* x_min, x_max, y_min, y_max */
     int transmission; /* also refracts: then Fresnel must be dielectric, and the surface has two sides */
     mu_fresnel_kind fresnel;
     /* MU_CUSTOM: what a file written by distribution.h defines, compiled for float and for double; NULL: not in that

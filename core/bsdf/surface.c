@@ -2,14 +2,16 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* surface.c: the table of distributions, and what musurf.h offers over it. */
 #include "core/bsdf/distribution.h"
+#include "core/bsdf/tabulated.h"
 
 extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr), MU(mu_kernel_std),
-    MU(mu_kernel_sheen);
+    MU(mu_kernel_sheen), MU(mu_kernel_tabulated);
 
 /* One row per mu_ndf; what has none comes down to another, see choose(). */
 static const kernel *const kernels[MU_NDF_COUNT] = {
-    [MU_GGX] = &MU(mu_kernel_ggx), [MU_BECKMANN] = &MU(mu_kernel_beckmann), [MU_GTR] = &MU(mu_kernel_gtr),
-    [MU_STD] = &MU(mu_kernel_std), [MU_SHEEN] = &MU(mu_kernel_sheen),
+    [MU_GGX] = &MU(mu_kernel_ggx),     [MU_BECKMANN] = &MU(mu_kernel_beckmann),
+    [MU_GTR] = &MU(mu_kernel_gtr),     [MU_STD] = &MU(mu_kernel_std),
+    [MU_SHEEN] = &MU(mu_kernel_sheen), [MU_TABULATED] = &MU(mu_kernel_tabulated),
 };
 
 /* The distribution that a definition comes down to, with its own alpha and gamma. */
@@ -32,9 +34,20 @@ static plan choose_std(const mu_definition *d, double alpha, double gamma) {
     return as(d, MU_STD, alpha, gamma, MU_REAL_BITS == 24 ? "std table" : "std quadrature");
 }
 
+/* A distribution has no mean slope: that of the histogram is a tilt, which the map applies. alpha is its spread. */
+static plan choose_tabulated(const mu_definition *d) {
+    double mean[2], covariance[3];
+    mu_tabulated_moments(d, mean, covariance);
+    plan p = as(d, MU_TABULATED, mu_tabulated_spread(covariance), d->gamma,
+                MU_REAL_BITS == 24 ? "tabulated table" : "tabulated sums");
+    for (int i = 0; i < 2; i++) p.definition.tilt[i] += mean[i];
+    return p;
+}
+
 static plan choose(const mu_definition *d) {
     const kernel *const custom = d->MU(custom);
     if (d->ndf == MU_CUSTOM) return (plan){custom, *d, custom ? custom->name : "none"};
+    if (d->ndf == MU_TABULATED) return choose_tabulated(d);
     if (d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG)) return (plan){NULL, *d, "mirror"};
     switch (d->ndf) {
     case MU_GTR: /* GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma = 0 */
@@ -78,7 +91,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .alpha = R(p.kernel ? p.definition.alpha : 0),
                    .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
                    .unit = 1,
-                   .tilt = {d->tilt[0], d->tilt[1]},
+                   .tilt = {p.definition.tilt[0], p.definition.tilt[1]},
                    .name = p.name};
     s->fresnel.kind = d->fresnel;
     for (int i = 0; i < 3; i++) {
@@ -91,13 +104,13 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     if (!p.kernel) return s;
     s->table_bytes = p.kernel->table_bytes(&p.definition);
     s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + header_bytes());
-    if (needs_full(d)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    if (needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
     const int is_uniform = s->kernel == p.kernel && !(p.kernel->traits & ANISOTROPIC) && scale <= DBL_MAX &&
                            mu_transform_is_similarity(d->transform);
     if (is_uniform) s->kernel = p.kernel->plans[PLAN_UNIFORM];
-    MU(map_make)(&s->map, is_uniform ? uniform : d->transform, d->tilt, s->unit);
+    MU(map_make)(&s->map, is_uniform ? uniform : d->transform, s->tilt, s->unit);
     return s;
 }
 
@@ -142,7 +155,13 @@ void MU(mu_blur)(closure *c, real alpha) {
         const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR],
                   full = c->kernel == c->kernel->plans[PLAN_FULL];
         const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;
-        if (!MU(map_widen)(&c->map, roughness, (double)alpha)) return;
+        map wide = c->map;
+        if (c->kernel->plans[PLAN_GENERAL] == kernels[MU_TABULATED]) {
+            const real *root = s->base.shape + TABULATED_ROOT;
+            MU(map_stand_for)(&wide, (const double[]){(double)root[0], (double)root[1], (double)root[2]});
+        }
+        if (!MU(map_widen)(&wide, roughness, (double)alpha)) return;
+        c->map = wide;
         c->kernel = full ? ggx->plans[PLAN_FULL] : ggx;
     }
     c->alpha = larger(c->alpha, alpha);

@@ -119,3 +119,14 @@ void mu_document_free(mu_document *document) {
     free(document->text);
     *document = (mu_document){0};
 }
+
+char *mu_document_beside(const mu_document *document, const char *name) {
+    const char *file = document->name;
+    const char *slash = strrchr(file, '/');
+    const size_t folder = slash && name[0] != '/' ? (size_t)(slash - file) + 1 : 0;
+    char *path = malloc(folder + strlen(name) + 1);
+    if (!path) return NULL;
+    memcpy(path, file, folder);
+    strcpy(path + folder, name);
+    return path;
+}

@@ -41,6 +41,8 @@ _Bool mu_document_read(mu_document *document, const char *file, mu_error *error)
 _Bool mu_document_parse(mu_document *document, const char *name, const char *text, size_t length,
                         size_t first_line, mu_error *error);
 void mu_document_free(mu_document *document);
+/* A file named in the document, relative to it; to be freed. NULL without memory. */
+char *mu_document_beside(const mu_document *document, const char *name);
 
 mu_place mu_place_root(const mu_document *document);
 /* value is NULL if there is no such member. */

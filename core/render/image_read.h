@@ -16,4 +16,7 @@
  * NULL on failure: missing, truncated, of no known format, or of more than 2^27 pixels. */
 float *mu_image_read(const char *file, int *width, int *height, mu_error *error);
 
+/* The numbers of a one-channel OpenEXR image, by its C core (image_plane.c), row by row from the top; free() it. */
+float *mu_image_read_plane(const char *file, int *width, int *height, mu_error *error);
+
 #endif

@@ -17,6 +17,8 @@ static const char *kind_name(musurf_kind kind) {
         return "vector";
     case MUSURF_MATRIX3:
         return "matrix3";
+    case MUSURF_GRID:
+        return "grid";
     case MUSURF_CHOICE:
         return "choice";
     case MUSURF_FLAG:

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/render/info.h"
+#include "core/render/material_grid.h"
 #include "core/render/material_settings.h"
 
 enum { LONGEST_NAME = 128 };
@@ -41,6 +42,8 @@ static json_t *plain_schema(const musurf_param *p) {
         return array_schema(number_schema(p), 2);
     case MUSURF_MATRIX3:
         return array_schema(array_schema(number_schema(p), 3), 3);
+    case MUSURF_GRID:
+        return mu_grid_schema(p);
     case MUSURF_FLAG:
         return json_pack("{s:s}", "type", "boolean");
     case MUSURF_CHOICE: {

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/render/material_settings.h"
 
@@ -103,6 +104,18 @@ static void read_transform(mu_material *material, const mu_settings *settings) {
     for (int i = 0; i < 4; i++) material->transform[i] = (float)(setting ? setting->values : p->initial)[i];
 }
 
+/* FNV-1a, eight bytes at a time. */
+static uint64_t digest_of(const mu_settings *settings) {
+    uint64_t digest = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < settings->count; i++)
+        for (size_t k = 0; k < settings->items[i].count; k++) {
+            uint64_t word;
+            memcpy(&word, settings->items[i].values + k, sizeof word);
+            digest = (digest ^ word) * 0x100000001b3u;
+        }
+    return digest;
+}
+
 _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
     static const char *const reserved[] = {"material", "jacobian", NULL};
     *material = (mu_material){.transform = {1, 0, 0, 1}};
@@ -118,6 +131,7 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
     mu_settings settings;
     if (!mu_settings_read(&settings, material->type, place, reserved, error)) return 0;
     read_transform(material, &settings);
+    material->digest = digest_of(&settings);
     _Bool good = 1;
     if (jacobian.value)
         good = read_jacobian(&material->jacobian, &jacobian, error) &&

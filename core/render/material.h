@@ -34,6 +34,7 @@ typedef struct mu_material {
     musurf_material *compiled;
     musurf_plan plan;
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
+    uint64_t digest;      /* of the grids among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the Jacobian goes: M = J transform */
 } mu_material;
 

@@ -4,6 +4,7 @@
  * material_settings.c: JSON → settings, with nothing known about any material but its parameter table.
  *
  *     "alpha": 0.2                            parameter "alpha"
+ *     "histogram": {"bounds": ..., ...}       a grid: see material_grid.h
  *     "fresnel": "none"                       choice parameter "fresnel" = "none"
  *     "fresnel": {"schlick": [1, 0.8, 0.3]}   "fresnel" = "schlick", and the parameter "fresnel.schlick"
  *     "fresnel": {"conductor": {"n": 1.5}}    "fresnel" = "conductor", and the parameter
@@ -15,6 +16,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "core/render/material_grid.h"
 
 enum { LONGEST_NAME = 128 };
 
@@ -163,8 +166,8 @@ static _Bool read_matrix3(const musurf_param *p, const mu_place *place, double *
     return 1;
 }
 
-static _Bool read_plain(const musurf_param *p, const mu_place *place, musurf_setting *setting, double *values,
-                        mu_error *error) {
+static _Bool read_plain(mu_settings *s, const musurf_param *p, const mu_place *place, musurf_setting *setting,
+                        double *values, mu_error *error) {
     size_t index;
     _Bool flag;
     switch (p->kind) {
@@ -178,6 +181,9 @@ static _Bool read_plain(const musurf_param *p, const mu_place *place, musurf_set
         return read_vector(p, place, values, error);
     case MUSURF_MATRIX3:
         return read_matrix3(p, place, values, error);
+    case MUSURF_GRID:
+        setting->values = s->grids[s->count - 1] = mu_grid_read(p, place, &setting->count, error);
+        return setting->values != NULL;
     case MUSURF_FLAG:
         if (!mu_place_flag(place, &flag, error)) return 0;
         values[0] = flag;
@@ -229,7 +235,7 @@ static _Bool read_param(mu_settings *s, const musurf_param *p, const mu_place *p
     if (json_is_object(place->value) && any_below(s->type, p->name))
         return read_members(s, place, p->name, NULL, error);
     musurf_setting *setting = mu_settings_add(s, p);
-    return read_plain(p, place, setting, s->values[s->count - 1], error);
+    return read_plain(s, p, place, setting, s->values[s->count - 1], error);
 }
 
 static _Bool read_members(mu_settings *s, const mu_place *place, const char *prefix,
@@ -255,7 +261,8 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
     *settings = (mu_settings){.type = type};
     settings->items = calloc(type->param_count + 1, sizeof *settings->items);
     settings->values = calloc(type->param_count + 1, sizeof *settings->values);
-    const _Bool good = settings->items && settings->values
+    settings->grids = calloc(type->param_count + 1, sizeof *settings->grids);
+    const _Bool good = settings->items && settings->values && settings->grids
                            ? read_members(settings, place, "", reserved, error)
                            : mu_place_fail(place, error, "not enough memory");
     if (!good) mu_settings_free(settings);
@@ -263,6 +270,8 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
 }
 
 void mu_settings_free(mu_settings *settings) {
+    for (size_t i = 0; settings->grids && i < settings->count; i++) free(settings->grids[i]);
+    free(settings->grids);
     free(settings->items);
     free(settings->values);
     *settings = (mu_settings){0};

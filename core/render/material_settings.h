@@ -10,6 +10,7 @@ typedef struct mu_settings {
     const musurf_material_type *type;
     musurf_setting *items; /* room for each parameter of the table */
     double (*values)[9];   /* items[i].values points to values[i] */
+    double **grids;        /* of MUSURF_GRID: items[i].values points to grids[i]; NULL elsewhere */
     size_t count;
 } mu_settings;
 

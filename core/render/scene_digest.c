@@ -52,6 +52,8 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (scene->lights[i].kind == MU_ENVIRONMENT && scene->lights[i].image)
             digest = add_file(digest, scene->lights[i].image);
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        digest = mix(digest, scene->materials[i].material.digest);
     const char *plugin;
     for (size_t i = 0; (plugin = mu_plugins_opened(scene->plugins, i)); ++i)
         digest = add_file(digest, plugin);

@@ -6,8 +6,8 @@
 
 #include "core/render/scene.h"
 
-/* Of everything the samples depend on but the size of the image: the scene's text, meshes, environment image,
- * plugins (the files' bytes), the seed and the version of musurf. Against mistakes, not against malice. */
+/* Of everything the samples depend on but the size of the image: the scene's text, meshes, environment image, grids
+ * of materials, plugins (the files' bytes), the seed and the version of musurf. Against mistakes, not against malice. */
 uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed);
 
 #endif

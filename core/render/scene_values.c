@@ -63,14 +63,7 @@ _Bool mu_read_choice(const mu_place *parent, const char *key, const char *const 
 }
 
 char *mu_scene_path(const mu_reader *reader, const char *name) {
-    const char *file = reader->document->name;
-    const char *slash = strrchr(file, '/');
-    const size_t folder = slash && name[0] != '/' ? (size_t)(slash - file) + 1 : 0;
-    char *path = malloc(folder + strlen(name) + 1);
-    if (!path) return NULL;
-    memcpy(path, file, folder);
-    strcpy(path + folder, name);
-    return path;
+    return mu_document_beside(reader->document, name);
 }
 
 _Bool mu_fail_unknown(const mu_place *place, json_t *table, const char *what, mu_error *error) {

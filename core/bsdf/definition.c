@@ -19,6 +19,8 @@ mu_definition mu_definition_default(void) {
         .dielectric = 1.5,
         .n = {0.06, 0.06, 0.05},
         .k = {4.152, 3.586, 2.869},
+        .flake_density = 1e6,
+        .flake_cone = 0.02,
     };
 }
 
@@ -105,6 +107,12 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         return complain(why, "alpha", 0, "sheen is defined for alpha above 0");
     if (d->ndf == MU_PHONG && !(d->exponent >= 0 && d->exponent <= DBL_MAX))
         return complain(why, "exponent", d->exponent, "phong is defined for finite exponents of at least 0");
+    if (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN) {
+        if (!(d->flake_density > 0 && d->flake_density <= DBL_MAX))
+            return complain(why, "flake_density", d->flake_density, "finite, and above 0");
+        if (!(d->flake_cone > 0 && d->flake_cone <= PI / 2))
+            return complain(why, "flake_cone", d->flake_cone, "an angle in (0, pi/2]");
+    }
     for (int i = 0; i < 2; i++)
         if (!(fabs(d->tilt[i]) <= DBL_MAX))
             return complain(why, "tilt", d->tilt[i], "a mean slope is finite");

@@ -29,6 +29,7 @@
 #ifndef MU_DISTRIBUTION_H
 #define MU_DISTRIBUTION_H
 
+#include "core/bsdf/flakes.h"
 #include "core/bsdf/linear_map.h"
 
 enum { MU_SHAPE = 20 };
@@ -80,6 +81,9 @@ typedef struct MU(mu_fresnel) {
 void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]);
 real MU(fresnel_dielectric)(real eta, real cosine);
 
+/* K / E[K] of the flakes in the closure's footprint around the normal n, of squared length n2 (glint.c). */
+real MU(glint_count)(const closure *c, const real n[3], real n2);
+
 /* A surface without microfacets (mirror.c). */
 void MU(mirror_sample)(const closure *c, const real u[3], sample *out);
 
@@ -98,6 +102,9 @@ struct MU(mu_surface) {
     map map; /* of the definition's M */
     size_t table_bytes;
     const char *name;
+    mu_flake_cdf *flake_cdf; /* NULL: not discrete */
+    double flake_cone;
+    mu_flakes flakes;
 };
 
 #endif

@@ -31,20 +31,23 @@
 #define MUSURF_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef enum mu_ndf {
-    MU_GGX,       /* Trowbridge & Reitz 1975 */
-    MU_BECKMANN,  /* Gaussian slopes */
-    MU_GTR,       /* generalised Trowbridge-Reitz, Burley 2012, of tail gamma */
-    MU_STD,       /* Student-t distribution, Ribardiere et al. 2017, of tail gamma */
-    MU_PHONG,     /* D = (n + 2) cos^n / 2 pi */
-    MU_SHEEN,     /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
-    MU_FLAT,      /* no microfacets: a mirror or a pane */
-    MU_TABULATED, /* a histogram of slopes */
+    MU_GGX,          /* Trowbridge & Reitz 1975 */
+    MU_BECKMANN,     /* Gaussian slopes */
+    MU_GTR,          /* generalised Trowbridge-Reitz, Burley 2012, of tail gamma */
+    MU_STD,          /* Student-t distribution, Ribardiere et al. 2017, of tail gamma */
+    MU_PHONG,        /* D = (n + 2) cos^n / 2 pi */
+    MU_SHEEN,        /* Conty & Kulla 2017: D = (2 + 1/alpha) sin^(1/alpha) / 2 pi */
+    MU_FLAT,         /* no microfacets: a mirror or a pane */
+    MU_TABULATED,    /* a histogram of slopes */
+    MU_DISCRETE_GGX, /* finitely many mirror-like flakes whose normals GGX scatters: Jakob et al. 2014 */
+    MU_DISCRETE_BECKMANN,
     MU_NDF_COUNT,
     MU_CUSTOM = 1000 /* a distribution that is not of this library: custom_f, custom_d */
 } mu_ndf;
@@ -96,6 +99,11 @@ typedef struct mu_definition {
     double schlick[3]; /* reflectance at normal incidence */
     double dielectric; /* n_below / n_above */
     double n[3], k[3]; /* conductor: real index and extinction, relative to the medium above */
+    /* Of the discrete distributions; without a footprint (mu_footprint) they are the smooth ones. Flakes per unit area of
+     * the plane of footprints, mostly that of texture coordinates, > 0; and how far from its own normal a flake counts,
+     * after M: radians, in (0, pi/2]. */
+    double flake_density, flake_cone;
+    uint64_t flake_seed;
 } mu_definition;
 
 mu_definition mu_definition_default(void);

@@ -26,6 +26,8 @@ typedef struct MU_SUFFIX(mu_closure) {
     MU_REAL side; /* +1, or -1: wo was below, and all directions in and out are turned over */
     MU_REAL eta;  /* of a dielectric: n_transmitted / n_incident, seen from wo */
     int importance; /* set it after mu_bind: importance is transported, not radiance. Matters to refraction only */
+    int has_footprint; /* set by mu_footprint; what follows is only touched if the surface is a discrete one */
+    double footprint[6];
 } MU_SUFFIX(mu_closure);
 
 typedef struct MU_SUFFIX(mu_value) {
@@ -69,7 +71,12 @@ const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);
  * mu_view and mu_normal may, if M is good. */
 int MU_SUFFIX(mu_bind)(const MU_SUFFIX(mu_surface) * surface, const MU_REAL wo[3], const MU_REAL transform[4],
                        MU_SUFFIX(mu_closure) * closure);
-/* Raises the slope roughness in every direction to at least alpha; a narrower lobe becomes GGX. */
+/* The part of the surface that is seen at once, of which a discrete distribution counts the flakes: u, v of its centre
+ * and of the two half-axes of a parallelogram. Set it after mu_bind; NULL, or one that is not finite, is all of the
+ * plane, where infinitely many flakes are the smooth surface. Other surfaces take no notice. f and weight change, pdfs
+ * do not. */
+void MU_SUFFIX(mu_footprint)(MU_SUFFIX(mu_closure) * closure, const double footprint[6]);
+/* Raises the slope roughness in every direction to at least alpha; a narrower lobe becomes GGX, without flakes. */
 void MU_SUFFIX(mu_blur)(MU_SUFFIX(mu_closure) * closure, MU_REAL alpha);
 
 /* Zero on the horizon, on the other side if nothing is transmitted, and for a mirror. Never negative, never NaN; saturates at the largest

@@ -25,8 +25,10 @@ normal_values MU(mu_normal)(const closure *c, const real wm[3]) {
     const real cosine = c->wo[0] * m[0] + c->wo[1] * m[1] + c->wo[2] * m[2];
     if (!c->kernel) return (normal_values){0, cosine > 0 && c->wo[2] > 0, 0};
     const real sigma = c->sigma / c->map.view_z, d = c->kernel->density(c, m);
-    if (!(cosine > 0 && sigma > 0)) return (normal_values){d, 0, 0}; /* chi+ */
-    return (normal_values){d, smaller(c->wo[2] / sigma, 1),
+    const real n2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    const real of_flakes = c->has_footprint ? smaller(d * MU(glint_count)(c, m, n2), REAL_MAX) : d;
+    if (!(cosine > 0 && sigma > 0)) return (normal_values){of_flakes, 0, 0}; /* chi+ */
+    return (normal_values){of_flakes, smaller(c->wo[2] / sigma, 1),
                            smaller(d * (cosine / sigma), REAL_MAX)}; /* Eq. (27) */
 }
 

@@ -46,10 +46,10 @@ HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, c
     real sigma_i, lambda_i;
     view_of(plan, c, i, &sigma_i, &lambda_i);
     const real scale = c->map.view_z;
-    const real f =
-        smaller(quarter_d * smaller(scale / larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN),
+    real f = smaller(quarter_d * smaller(scale / larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN),
                                     saturated),
                 saturated);
+    if (plan == PLAN_FULL) f = smaller(f * glint(plan, c, h, h2), saturated);
     real F[3];
     fresnel_of(c, sqrt(sum2) / 2, F); /* wo.wm = |h| / 2 */
     for (int k = 0; k < 3; k++) out->f[k] = F[k] * f;

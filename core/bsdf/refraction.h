@@ -34,14 +34,15 @@ static inline real refraction_density(const closure *c, const real i[3], const r
     return smaller(d * (facing_o / H2) * (facing_i / H2) * (1 - F), saturated);
 }
 
-static inline void refraction_fill(const closure *c, const real i[3], real d, real f[3], real *pdf,
-                                   real *reverse) {
+static inline void refraction_fill(const closure *c, const real i[3], real d, real flakes, real f[3],
+                                   real *pdf, real *reverse) {
     real sigma_i, lambda_i;
     view_of(PLAN_FULL, c, i, &sigma_i, &lambda_i);
     const real scale = c->map.view_z, eta2 = square(c->eta);
     const real radiance =
         d * smaller(scale / larger(unshadowed(PLAN_FULL, c, i, sigma_i, lambda_i, 1), REAL_MIN), saturated);
-    f[0] = f[1] = f[2] = smaller(radiance * (MUTANT(9, !c->importance, c->importance) ? eta2 : 1), saturated);
+    const real carried = radiance * (MUTANT(9, !c->importance, c->importance) ? eta2 : 1);
+    f[0] = f[1] = f[2] = smaller(carried * flakes, saturated);
     *pdf = smaller(d * eta2 * (scale / larger(c->sigma, REAL_MIN)), saturated);
     *reverse = smaller(d * (scale / larger(sigma_i, REAL_MIN)), saturated);
 }
@@ -53,7 +54,7 @@ static inline void refraction_eval(const closure *c, const real i[3], value *out
     if (!(H2 > 0)) return;
     const real facing = (H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2]) / sqrt(H2);
     const real d = refraction_density(c, i, H, H2, MU(fresnel_dielectric)(c->eta, smaller(facing, 1)));
-    refraction_fill(c, i, d, out->f, &out->pdf, &out->pdf_reverse);
+    refraction_fill(c, i, d, glint(PLAN_FULL, c, H, H2), out->f, &out->pdf, &out->pdf_reverse);
 }
 
 /* The direction that micronormal m (unit, seen at the cosine `facing` > 0) refracts wo into, turned over to the side of
@@ -84,7 +85,8 @@ static inline void refraction_sample(const closure *c, const real m[3], real fac
     view_of(PLAN_FULL, c, i, &sigma_i, &lambda_i);
     const real ratio =
         smaller(i[2] * c->sigma / larger(unshadowed(PLAN_FULL, c, i, sigma_i, lambda_i, 1), REAL_MIN), 1);
-    const real weight = c->importance ? ratio : ratio / square(eta);
+    const real flakes = eta == 1 ? 1 : glint(PLAN_FULL, c, m, 1);
+    const real weight = smaller((c->importance ? ratio : ratio / square(eta)) * flakes, saturated);
     for (int k = 0; k < 3; k++)
         out->weight[k] = weight; /* G2 / G1, over eta² for radiance; 1 - F was the choice */
     out->transmitted = 1, out->rejected = 0, out->eta = eta;
@@ -95,5 +97,5 @@ static inline void refraction_sample(const closure *c, const real m[3], real fac
     const real facing_i = i[0] * m[0] + i[1] * m[1] + i[2] * m[2];
     const real density_i =
         smaller(d * facing * facing_i / larger(along * along, REAL_MIN) * (1 - F), saturated);
-    refraction_fill(c, i, density_i, out->f, &out->pdf, &out->pdf_reverse);
+    refraction_fill(c, i, density_i, flakes, out->f, &out->pdf, &out->pdf_reverse);
 }

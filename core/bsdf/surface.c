@@ -59,10 +59,18 @@ static plan choose(const mu_definition *d) {
         return choose_std(d, d->alpha, d->gamma);
     case MU_PHONG: /* Student-t of b = (gamma - 1) alpha² = 1 */
         return choose_std(d, sqrt(2 / (d->exponent + 2)), d->exponent / 2 + 2);
+    case MU_DISCRETE_GGX:
+        return as(d, MU_GGX, d->alpha, 2, "ggx flakes");
+    case MU_DISCRETE_BECKMANN:
+        return as(d, MU_BECKMANN, d->alpha, 2, "beckmann flakes");
     default:
         return as(d, d->ndf, d->alpha, d->gamma,
                   d->ndf == MU_SHEEN ? MU_REAL_BITS == 24 ? "sheen table" : "sheen quadrature" : NULL);
     }
+}
+
+static int is_discrete(const mu_definition *d) {
+    return d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN;
 }
 
 /* Does it need what only the full plan has? */
@@ -104,7 +112,13 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     if (!p.kernel) return s;
     s->table_bytes = p.kernel->table_bytes(&p.definition);
     s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + header_bytes());
-    if (needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    if (is_discrete(d)) {
+        /* the lattice knows nothing of M: the same flakes lie on the microsurface however M deforms it */
+        s->flake_cdf = d->ndf == MU_DISCRETE_GGX ? mu_flake_cdf_ggx : mu_flake_cdf_beckmann;
+        s->flake_cone = d->flake_cone;
+        s->flakes = mu_flakes_make(d->flake_density, d->flake_cone / s->unit, d->flake_seed);
+    }
+    if (is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
     const int is_uniform = s->kernel == p.kernel && !(p.kernel->traits & ANISOTROPIC) && scale <= DBL_MAX &&
@@ -126,7 +140,7 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->kernel = s->kernel;
     c->alpha = s->alpha;
     c->map = s->map;
-    c->importance = 0;
+    c->importance = c->has_footprint = 0;
     if (transform) {
         const double m[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
                              (double)transform[3]};
@@ -139,6 +153,12 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->sigma = c->lambda = 0;
     if (c->kernel && c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
     return c->wo[2] > 0;
+}
+
+void MU(mu_footprint)(closure *c, const double footprint[6]) {
+    if (!c->surface->flake_cdf) return;
+    c->has_footprint = footprint != NULL;
+    for (int i = 0; footprint && i < 6; i++) c->footprint[i] = footprint[i];
 }
 
 void MU(mu_blur)(closure *c, real alpha) {
@@ -165,6 +185,7 @@ void MU(mu_blur)(closure *c, real alpha) {
         c->kernel = full ? ggx->plans[PLAN_FULL] : ggx;
     }
     c->alpha = larger(c->alpha, alpha);
+    c->has_footprint = 0;
     c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
 }
 

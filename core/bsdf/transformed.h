@@ -47,6 +47,11 @@ static inline real transformed_density(plan_kind plan, const closure *c, const r
     return smaller(d * wrong, saturated) * MUTANT(6, orientation(&c->map), R(1));
 }
 
+/* What the flakes of this footprint make of D: 1 in the mean over footprints. */
+static inline real glint(plan_kind plan, const closure *c, const real n[3], real n2) {
+    return plan == PLAN_FULL && c->has_footprint ? MU(glint_count)(c, n, n2) : 1;
+}
+
 static inline void fresnel_of(const closure *c, real cosine, real F[3]) {
     F[0] = F[1] = F[2] = 1;
     if (c->surface->fresnel.kind) MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(cosine, 1), F);

@@ -22,12 +22,13 @@ musurf_result musurf_fail(const musurf_host *host, musurf_result result, uint32_
 }
 
 static size_t numbers_of(musurf_kind kind) {
-    return kind == MUSURF_COLOR     ? 3
-           : kind == MUSURF_MATRIX  ? 4
-           : kind == MUSURF_VECTOR  ? 2
-           : kind == MUSURF_MATRIX3 ? 9
-           : kind == MUSURF_CHOICE  ? 0
-                                    : 1;
+    return kind == MUSURF_COLOR       ? 3
+           : kind == MUSURF_MATRIX    ? 4
+           : kind == MUSURF_VECTOR    ? 2
+           : kind == MUSURF_MATRIX3   ? 9
+           : kind == MUSURF_CHOICE    ? 0
+           : kind == MUSURF_FOOTPRINT ? 6
+                                      : 1;
 }
 
 static musurf_result check_choice(const given *g, const musurf_param *p, const musurf_setting *s) {

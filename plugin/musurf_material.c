@@ -54,8 +54,8 @@ static const char *transform_class(const parsed *p) {
 /* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
     const mu_definition *d = &p->definition;
-    return p->varying || d->ndf == MU_TABULATED || d->tilt[0] != 0 || d->tilt[1] != 0 ||
-           !mu_transform_is_similarity(d->transform);
+    return p->varying || d->ndf == MU_TABULATED || musurf_is_discrete(d) || d->tilt[0] != 0 ||
+           d->tilt[1] != 0 || !mu_transform_is_similarity(d->transform);
 }
 
 static void append(char *text, size_t size, const char *more) {
@@ -73,11 +73,12 @@ static void name_plan(musurf_material *m, const char *surface) {
     if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
     if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0 && p->definition.ndf != MU_TABULATED)
         append(m->left_out, sizeof m->left_out, "tilt");
-    if (!p->varying) append(m->left_out, sizeof m->left_out, "slots");
+    if (!musurf_is_discrete(&p->definition)) append(m->left_out, sizeof m->left_out, "flakes");
+    if (!(m->needs & MUSURF_NEEDS_SLOTS)) append(m->left_out, sizeof m->left_out, "slots");
     if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
     if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
     if (!mirror && !anisotropic(p)) append(m->left_out, sizeof m->left_out, "matrices");
-    if (!m->needs) append(m->left_out, sizeof m->left_out, "tangents");
+    if (!(m->needs & MUSURF_NEEDS_TANGENT)) append(m->left_out, sizeof m->left_out, "tangents");
 }
 
 static void *obtain(const musurf_host *host, size_t bytes) {
@@ -122,11 +123,15 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
         if (mirror || p.definition.dielectric == 1) m->lobes |= MUSURF_DELTA_TRANSMISSION;
     }
     m->needs = (!mirror && anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
-               (p.varying ? (uint32_t)MUSURF_NEEDS_SLOTS : 0);
+               (p.varying || p.footprint_from == FOOTPRINT_SLOT ? (uint32_t)MUSURF_NEEDS_SLOTS : 0) |
+               (musurf_is_discrete(&p.definition) && p.footprint_from != FOOTPRINT_CONSTANT
+                    ? (uint32_t)MUSURF_NEEDS_FOOTPRINT
+                    : 0);
     m->bytes = (uint32_t)bytes;
     m->table_bytes = (uint32_t)(in_float ? mu_surface_table_bytes_f(m->in_float) : 0);
-    m->closure_bytes =
-        (uint32_t)(offsetof(bound, closure) + (in_float ? sizeof(mu_closure_f) : sizeof(mu_closure_d)));
+    const size_t plain = in_float ? offsetof(mu_closure_f, footprint) : offsetof(mu_closure_d, footprint),
+                 whole = in_float ? sizeof(mu_closure_f) : sizeof(mu_closure_d);
+    m->closure_bytes = (uint32_t)(offsetof(bound, closure) + (p.footprint_from ? whole : plain));
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
     *out = m;
     return MUSURF_OK;
@@ -141,6 +146,12 @@ static void release(musurf_material *material) {
     }
 }
 
+static uint32_t slot_floats(const parsed *p) {
+    const uint32_t map = p->varying ? p->slot + 4 : 0,
+                   footprint = p->footprint_from == FOOTPRINT_SLOT ? p->footprint_slot + 6 : 0;
+    return map > footprint ? map : footprint;
+}
+
 static void describe(const musurf_material *m, musurf_plan *plan) {
     const musurf_plan full = {
         .size = plan->size,
@@ -150,7 +161,7 @@ static void describe(const musurf_material *m, musurf_plan *plan) {
         .lobes = m->lobes | (m->lobes & MUSURF_DELTA_REFLECTION ? (uint32_t)MUSURF_GLOSSY_REFLECTION : 0) |
                  (m->lobes & MUSURF_DELTA_TRANSMISSION ? (uint32_t)MUSURF_GLOSSY_TRANSMISSION : 0),
         .needs = m->needs,
-        .slot_floats = m->parsed.varying ? m->parsed.slot + 4 : 0,
+        .slot_floats = slot_floats(&m->parsed),
         .table_bytes = m->table_bytes,
         .material_bytes = m->bytes,
         .name = m->name,

@@ -8,8 +8,9 @@
 
 #include "plugin/musurf_parameters.h"
 
-static const char *const ndf_choices[] = {"ggx",   "beckmann", "gtr",       "std",       "phong",
-                                          "sheen", "flat",     "ellipsoid", "tabulated", NULL};
+static const char *const ndf_choices[] = {
+    "ggx",          "beckmann",          "gtr", "std", "phong", "sheen", "flat", "ellipsoid", "tabulated",
+    "discrete_ggx", "discrete_beckmann", NULL};
 static const char *const anisotropy_choices[] = {"none", "disney",     "cycles", "openpbr",
                                                  "gltf", "covariance", NULL};
 static const char *const masking_choices[] = {"separable", "height_correlated", "direction_correlated", NULL};
@@ -17,25 +18,19 @@ static const char *const fresnel_choices[] = {"none", "schlick", "dielectric", "
 static const char *const conductor_choices[] = {"Ag", "Al", "Au", "Cr", "Cu", "custom", NULL};
 static const char *const sampler_choices[] = {"visible", "ndf", "mixed", "visible_uniform", "auto", NULL};
 
-#define HEAD(id, name, label) sizeof(musurf_param), id, name, label
-#define NUMBERS               NULL, NULL
+#define HEAD(id, name, label)    sizeof(musurf_param), id, name, label
+#define NUMBERS                  NULL, NULL
+#define CHOICE(initial, choices) "", MUSURF_CHOICE, 0, 0, 0, 0, 0, {0}, initial, choices
+#define SCALAR(unit, flags, min, max, soft_min, soft_max, initial)                                           \
+    unit, MUSURF_NUMBER, flags, min, max, soft_min, soft_max, {initial}, NUMBERS
 
 const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(1, "ndf", "Distribution"),
      "Distribution of microfacet normals: ggx, beckmann; gtr and std (Student-t), whose tail is gamma; "
      "phong, by its "
      "exponent; sheen (cloth), whose alpha is its r; ellipsoid, which may be tilted; flat: a mirror or a "
-     "pane; tabulated: any slopes, by histogram.",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "ggx",
-     ndf_choices},
+     "pane; tabulated: any slopes, by histogram; discrete_ggx and discrete_beckmann: flakes.",
+     CHOICE("ggx", ndf_choices)},
     {HEAD(2, "alpha", "Slope roughness"),
      "Slope roughness of the untransformed microsurface; 0 is a mirror. At most 1 for gtr. Set this or "
      "roughness.",
@@ -99,16 +94,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      NUMBERS},
     {HEAD(7, "fresnel", "Fresnel"),
      "Reflectance of a facet: none (all light is reflected), schlick, dielectric or conductor.",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "none",
-     fresnel_choices},
+     CHOICE("none", fresnel_choices)},
     {HEAD(8, "fresnel.schlick", "Reflectance"),
      "Schlick's approximation from this reflectance at normal incidence.",
      "",
@@ -131,18 +117,8 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      3,
      {1.5},
      NUMBERS},
-    {HEAD(10, "fresnel.conductor", "Metal"),
-     "A measured metal by its symbol, or custom: n and k as set.",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "Ag",
-     conductor_choices},
+    {HEAD(10, "fresnel.conductor", "Metal"), "A measured metal by its symbol, or custom: n and k as set.",
+     CHOICE("Ag", conductor_choices)},
     {HEAD(11, "fresnel.conductor.n", "n"),
      "Real refractive index of a custom conductor, relative to the outside.",
      "",
@@ -171,16 +147,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "directions with probability alpha (Appendix B), for comparison; visible normals with 3 of 10 "
      "directions uniform, "
      "for very long tails; auto measures which of visible and visible_uniform has the lower variance.",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "visible",
-     sampler_choices},
+     CHOICE("visible", sampler_choices)},
     {HEAD(14, "exponent", "Exponent"),
      "Exponent n of phong: D = (n + 2) cos^n / 2 pi. The other distributions have none.",
      "",
@@ -228,16 +195,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      NUMBERS},
     {HEAD(18, "anisotropy", "Anisotropy"),
      "Anisotropy by the convention of another system; a value is given by its name.",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "none",
-     anisotropy_choices},
+     CHOICE("none", anisotropy_choices)},
     {HEAD(19, "anisotropy.disney", "Disney anisotropic"),
      "anisotropic of Burley 2012 and Blender's Principled: aspect = sqrt(1 - 0.9 anisotropic); highlight "
      "along the tangent.",
@@ -353,16 +311,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(29, "masking", "Shadowing-masking"),
      "Form of Smith's shadowing-masking: separable, height_correlated, or direction_correlated (also by the "
      "azimuth between the directions).",
-     "",
-     MUSURF_CHOICE,
-     0,
-     0,
-     0,
-     0,
-     0,
-     {0},
-     "height_correlated",
-     masking_choices},
+     CHOICE("height_correlated", masking_choices)},
     {HEAD(30, "transmission", "Transmission"),
      "Also refracts what a facet does not reflect: a rough dielectric seen from both sides. Needs fresnel "
      "dielectric.",
@@ -385,6 +334,29 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      0,
      INFINITY,
      0,
+     1,
+     {0},
+     NUMBERS},
+    {HEAD(32, "flakes.density", "Flake density"),
+     "Of the discrete distributions: mirror-like flakes per unit area of texture coordinates.",
+     SCALAR("", MUSURF_MIN_EXCLUDED, 0, INFINITY, 1, 1e6, 1e6)},
+    {HEAD(33, "flakes.cone", "Flake cone"),
+     "A flake reflects into the cone of this half-angle around its normal, after transform: its own "
+     "roughness, or half the "
+     "width of the lights.",
+     SCALAR("radians", MUSURF_MIN_EXCLUDED, 0, 1.5707963267948966, 0.001, 0.2, 0.02)},
+    {HEAD(34, "flakes.seed", "Flake seed"), "Which flakes: a whole number.",
+     SCALAR("", 0, 0, 9007199254740992, 0, 100, 0)},
+    {HEAD(35, "footprint", "Footprint"),
+     "The part of the texture plane whose flakes are counted: centre and the two half-axes of a "
+     "parallelogram. A renderer "
+     "sets it at each hit, to a pixel's; without one there are so many flakes that the surface is smooth.",
+     "",
+     MUSURF_FOOTPRINT,
+     MUSURF_MAY_VARY | MUSURF_NO_DEFAULT,
+     -INFINITY,
+     INFINITY,
+     -1,
      1,
      {0},
      NUMBERS},

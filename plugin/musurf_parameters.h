@@ -40,6 +40,10 @@ enum {
     MASKING,
     TRANSMISSION,
     HISTOGRAM,
+    FLAKE_DENSITY,
+    FLAKE_CONE,
+    FLAKE_SEED,
+    FOOTPRINT,
     PARAMETER_END
 };
 enum { PARAMETER_COUNT = PARAMETER_END - 1 };
@@ -52,7 +56,16 @@ typedef struct parsed {
     int sampler_auto;         /* the sampler is to be measured */
     int varying;
     uint32_t slot;
+    enum {
+        FOOTPRINT_NONE,
+        FOOTPRINT_CONSTANT,
+        FOOTPRINT_SLOT
+    } footprint_from; /* none: or nothing discrete */
+    uint32_t footprint_slot;
+    double footprint[6];
 } parsed;
+/* Are there flakes to be told apart? */
+int musurf_is_discrete(const mu_definition *definition);
 
 musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settings, size_t count,
                            parsed *out);

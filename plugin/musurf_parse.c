@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* musurf_parse.c: settings, checked against the parameter table, become a definition for the core. */
+#include <math.h>
 #include <string.h>
 
 #include "plugin/musurf_given.h"
@@ -45,6 +46,33 @@ static musurf_result parse_fresnel(const given *g, mu_definition *d) {
     return MUSURF_OK;
 }
 
+int musurf_is_discrete(const mu_definition *d) {
+    return (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN) && d->alpha > 0;
+}
+
+static musurf_result parse_flakes(const given *g, parsed *out) {
+    mu_definition *d = &out->definition;
+    d->flake_density = musurf_number(g, FLAKE_DENSITY);
+    d->flake_cone = musurf_number(g, FLAKE_CONE);
+    const double seed = musurf_number(g, FLAKE_SEED);
+    d->flake_seed = (uint64_t)seed;
+    if (seed != floor(seed))
+        return musurf_fail(g->host, MUSURF_INVALID, FLAKE_SEED, "%.9g is no whole number", seed);
+    for (uint32_t id = FLAKE_DENSITY; id <= FOOTPRINT; id++)
+        if (g->by_id[id] && d->ndf != MU_DISCRETE_GGX && d->ndf != MU_DISCRETE_BECKMANN)
+            return musurf_fail(g->host, MUSURF_INVALID, id,
+                               "belongs to discrete_ggx and discrete_beckmann, but ndf is another");
+    const musurf_setting *set = g->by_id[FOOTPRINT];
+    if (!set || !musurf_is_discrete(d)) return MUSURF_OK;
+    out->footprint_from =
+        COVERS(set, source) && set->source == MUSURF_SLOT ? FOOTPRINT_SLOT : FOOTPRINT_CONSTANT;
+    if (out->footprint_from == FOOTPRINT_SLOT)
+        out->footprint_slot = set->slot;
+    else
+        musurf_numbers(g, FOOTPRINT, 6, out->footprint);
+    return MUSURF_OK;
+}
+
 /* What the core says of a definition, in the words of the parameter that caused it. */
 static musurf_result judge(const given *g, const mu_definition *d) {
     static const struct {
@@ -56,6 +84,8 @@ static musurf_result judge(const given *g, const mu_definition *d) {
                       {"transform", TRANSFORM},
                       {"tilt", TILT},
                       {"histogram", HISTOGRAM},
+                      {"flake_density", FLAKE_DENSITY},
+                      {"flake_cone", FLAKE_CONE},
                       {"transmission", TRANSMISSION},
                       {"schlick", SCHLICK},
                       {"dielectric", DIELECTRIC},
@@ -82,6 +112,7 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     musurf_result result = musurf_gather(&g, settings, count);
     if (result == MUSURF_OK) result = musurf_parse_shape(&g, out);
     if (result == MUSURF_OK) result = parse_fresnel(&g, d);
+    if (result == MUSURF_OK) result = parse_flakes(&g, out);
     if (result != MUSURF_OK) return result;
     const int sampler = musurf_choice(&g, SAMPLER_CHOICE);
     out->sampler_auto = sampler == MU_SAMPLER_COUNT;

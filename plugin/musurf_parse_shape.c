@@ -11,8 +11,9 @@
 #include "plugin/musurf_given.h"
 
 /* The core's distributions by the order of the choices. */
-static const mu_ndf ndf_of[] = {MU_GGX,   MU_BECKMANN, MU_GTR, MU_STD,      MU_PHONG,
-                                MU_SHEEN, MU_FLAT,     MU_GGX, MU_TABULATED};
+static const mu_ndf ndf_of[] = {
+    MU_GGX,          MU_BECKMANN,         MU_GTR, MU_STD, MU_PHONG, MU_SHEEN, MU_FLAT, MU_GGX, MU_TABULATED,
+    MU_DISCRETE_GGX, MU_DISCRETE_BECKMANN};
 enum { ELLIPSOID = 7 };
 
 /* The first of these that is set, to something other than 0; or 0. */

@@ -100,9 +100,10 @@ enum {
     MUSURF_FLAG = 5,    /* one double: 0 or 1 */
     MUSURF_VECTOR = 6,  /* two doubles: x and y in the tangent plane */
     MUSURF_MATRIX3 = 7, /* nine doubles: the three rows of a 3x3 matrix */
-    MUSURF_GRID =
-        8 /* columns, rows, x_min, x_max, y_min, y_max, and a number per cell, row by row from (x_min,
-                         * y_min) on; the parameter's range is that of the cells. The setting's `count` tells how many */
+    MUSURF_GRID = 8, /* columns, rows, x_min, x_max, y_min, y_max, and a number per cell, row by row from (x_min,
+                      * y_min) on; the parameter's range is that of the cells. The setting's `count` tells how many */
+    MUSURF_FOOTPRINT = 9 /* six doubles, (u, v) of a centre and of two half-axes: the parallelogram of texture
+                          * coordinates that is seen at once; not finite: all there is */
 };
 
 enum {
@@ -196,7 +197,11 @@ typedef struct musurf_material musurf_material; /* opaque: the plugin's */
 
 enum {
     MUSURF_NEEDS_TANGENT = 1u << 0, /* shading depends on the tangent: give it a continuous one */
-    MUSURF_NEEDS_SLOTS = 1u << 1    /* setup reads slots */
+    MUSURF_NEEDS_SLOTS = 1u << 1,   /* setup reads slots */
+    /* Details of the surface are told apart at the scale of a pixel. Compile again with the parameter of kind
+     * MUSURF_FOOTPRINT in a slot, and hand over the pixel's at each hit; without, or where setup's slots are NULL, the
+     * surface looks as from afar. Not set where a constant footprint is. */
+    MUSURF_NEEDS_FOOTPRINT = 1u << 2
 };
 
 /* What compile decided. The host fills in `size`, the plugin the rest up to it. */

@@ -5,7 +5,7 @@
  *
  * For validation, tables and plots: it answers with D, G1, sigma, ... of the material's microsurface, which the
  * shading calls never show. The same formulas run in either precision, so the float error can be measured. Only
- * for materials whose parameters are all constant. Slow compared with the shading calls. All functions are [any].
+ * for materials whose parameters are all constant; a footprint in slots is left out (the surface as from afar). Slow compared with the shading calls. All functions are [any].
  */
 #ifndef MUSURF_PROBE_H
 #define MUSURF_PROBE_H

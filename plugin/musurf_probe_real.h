@@ -13,14 +13,15 @@ static int IN(normalised)(const double w[3], REAL out[3]) {
     return 1;
 }
 
-static musurf_result IN(evaluate)(const IN(mu_surface) * surface, const double wo[3], const double *wm,
-                                  const double *wi, musurf_probe_values *out) {
+static musurf_result IN(evaluate)(const IN(mu_surface) * surface, const double *footprint, const double wo[3],
+                                  const double *wm, const double *wi, musurf_probe_values *out) {
     REAL o[3], m[3], i[3];
     *out = (musurf_probe_values){0};
     if (!IN(normalised)(wo, o) || (wm && !IN(normalised)(wm, m)) || (wi && !IN(normalised)(wi, i)))
         return MUSURF_INVALID;
     IN(mu_closure) closure;
     const int above = IN(mu_bind)(surface, o, NULL, &closure);
+    IN(mu_footprint)(&closure, footprint);
     out->delta = !closure.kernel;
     if (o[2] * closure.side >= 0) {
         const IN(mu_masking) view = IN(mu_view)(&closure, o);
@@ -44,8 +45,8 @@ static musurf_result IN(evaluate)(const IN(mu_surface) * surface, const double w
     return MUSURF_OK;
 }
 
-static musurf_result IN(draw)(const IN(mu_surface) * surface, mu_sampler sampler, const double wo[3],
-                              const double u[3], musurf_probe_sample *out) {
+static musurf_result IN(draw)(const IN(mu_surface) * surface, const double *footprint, mu_sampler sampler,
+                              const double wo[3], const double u[3], musurf_probe_sample *out) {
     REAL o[3], v[3];
     *out = (musurf_probe_sample){.rejected = 1};
     if (!IN(normalised)(wo, o)) return MUSURF_INVALID;
@@ -56,6 +57,7 @@ static musurf_result IN(draw)(const IN(mu_surface) * surface, mu_sampler sampler
     }
     IN(mu_closure) closure;
     if (!IN(mu_bind)(surface, o, NULL, &closure)) return MUSURF_OK;
+    IN(mu_footprint)(&closure, footprint);
     IN(mu_sample) sample;
     IN(mu_sample_with)(&closure, sampler, v, &sample);
     out->rejected = (uint32_t)sample.rejected;

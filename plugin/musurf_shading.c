@@ -8,6 +8,19 @@
 
 #include "plugin/musurf_compiled.h"
 
+/* Slots hold the transform, or the footprint, or both. */
+static void set_footprint(const parsed *p, const float *slots, int in_float, bound *b) {
+    double f[6];
+    if (p->footprint_from == FOOTPRINT_SLOT && !slots) return;
+    for (int i = 0; i < 6; i++)
+        f[i] = p->footprint_from == FOOTPRINT_SLOT ? (double)slots[p->footprint_slot + (uint32_t)i]
+                                                   : p->footprint[i];
+    if (in_float)
+        mu_footprint_f(&b->closure.f, f);
+    else
+        mu_footprint_d(&b->closure.d, f);
+}
+
 uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *slots, uint32_t mode,
                       void *closure) {
     bound *b = closure;
@@ -29,6 +42,7 @@ uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *
         if (!mu_bind_d(m->in_double, w, m->parsed.varying ? t : NULL, &b->closure.d)) return 0;
         b->closure.d.importance = (mode & MUSURF_IMPORTANCE) != 0;
     }
+    if (m->parsed.footprint_from) set_footprint(&m->parsed, slots, m->in_float != NULL, b);
     return m->lobes;
 }
 

@@ -20,11 +20,12 @@ static const musurf_param *param_at(const musurf_material_type *type, uint32_t i
 }
 
 static int numbers_of(musurf_kind kind) {
-    return kind == MUSURF_COLOR     ? 3
-           : kind == MUSURF_MATRIX  ? 4
-           : kind == MUSURF_VECTOR  ? 2
-           : kind == MUSURF_MATRIX3 ? 9
-                                    : 1;
+    return kind == MUSURF_COLOR       ? 3
+           : kind == MUSURF_MATRIX    ? 4
+           : kind == MUSURF_VECTOR    ? 2
+           : kind == MUSURF_MATRIX3   ? 9
+           : kind == MUSURF_FOOTPRINT ? 6
+                                      : 1;
 }
 
 static void tables_are_sound(void **state) {
@@ -43,7 +44,7 @@ static void tables_are_sound(void **state) {
                 assert_int_not_equal(param->id, param_at(type, j)->id);
                 assert_string_not_equal(param->name, param_at(type, j)->name);
             }
-            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_GRID);
+            assert_in_range(param->kind, MUSURF_NUMBER, MUSURF_FOOTPRINT);
             if (param->kind == MUSURF_CHOICE) {
                 assert_non_null(param->choices);
                 int found = 0;

@@ -19,6 +19,8 @@ static const char *kind_name(musurf_kind kind) {
         return "matrix3";
     case MUSURF_GRID:
         return "grid";
+    case MUSURF_FOOTPRINT:
+        return "footprint";
     case MUSURF_CHOICE:
         return "choice";
     case MUSURF_FLAG:

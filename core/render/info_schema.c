@@ -44,6 +44,8 @@ static json_t *plain_schema(const musurf_param *p) {
         return array_schema(array_schema(number_schema(p), 3), 3);
     case MUSURF_GRID:
         return mu_grid_schema(p);
+    case MUSURF_FOOTPRINT:
+        return array_schema(array_schema(number_schema(p), 2), 3);
     case MUSURF_FLAG:
         return json_pack("{s:s}", "type", "boolean");
     case MUSURF_CHOICE: {

@@ -166,6 +166,18 @@ static _Bool read_matrix3(const musurf_param *p, const mu_place *place, double *
     return 1;
 }
 
+static _Bool read_footprint(const musurf_param *p, const mu_place *place, double *out, mu_error *error) {
+    for (size_t i = 0; i < 3; i++) {
+        const mu_place pair = mu_place_element(place, i);
+        if (!is_array_of(place->value, 3) || !is_array_of(pair.value, 2))
+            return mu_place_fail(place, error,
+                                 "a footprint is its centre and two half-axes, [[u, v], [u, v], [u, v]], in "
+                                 "texture coordinates");
+        if (!read_numbers(p, &pair, 2, out + 2 * i, error)) return 0;
+    }
+    return 1;
+}
+
 static _Bool read_plain(mu_settings *s, const musurf_param *p, const mu_place *place, musurf_setting *setting,
                         double *values, mu_error *error) {
     size_t index;
@@ -184,6 +196,8 @@ static _Bool read_plain(mu_settings *s, const musurf_param *p, const mu_place *p
     case MUSURF_GRID:
         setting->values = s->grids[s->count - 1] = mu_grid_read(p, place, &setting->count, error);
         return setting->values != NULL;
+    case MUSURF_FOOTPRINT:
+        return read_footprint(p, place, values, error);
     case MUSURF_FLAG:
         if (!mu_place_flag(place, &flag, error)) return 0;
         values[0] = flag;

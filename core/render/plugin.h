@@ -27,6 +27,7 @@ static inline size_t mu_kind_numbers(musurf_kind kind) {
            : kind == MUSURF_MATRIX                      ? 4
            : kind == MUSURF_VECTOR                      ? 2
            : kind == MUSURF_MATRIX3                     ? 9
+           : kind == MUSURF_FOOTPRINT                   ? 6
                                                         : 0;
 }
 

@@ -44,6 +44,7 @@ NEEDS = {
     "grids": {"objects": [dict(BALL, grid={"material": LAMBERT})]},
     "two_sided": {"objects": [dict(BALL, two_sided=True)]},
     "jacobians": with_material(jacobian={"map": "power_shear", "amount": 2, "exponent": 5}),
+    "footprints": with_material(ndf="discrete_ggx"),
     "environment": {"lights": [{"type": "environment", "image": "sky.exr"}]},
     "studio": {"lights": [{"type": "studio"}]},
     "constant": {},

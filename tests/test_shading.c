@@ -105,26 +105,26 @@ static void test_frames(void **state) {
         .ng = ng, .frame = {{0.8660254f, 0, -0.5f}, {0, 1, 0}, n}, .object = 0, .material = material};
     mu_shading s;
 
-    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.2f, 0.1f, 0.9f)), f.scratch);
+    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.2f, 0.1f, 0.9f)), NULL, f.scratch);
     assert_true(s.lobes != 0 && s.frame.n.x == n.x && s.ng.z == 1);
     check_frame(&s);
 
     /* Seen from the front, but from behind the interpolated normal. */
-    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(-0.9f, 0.1f, 0.2f)), f.scratch);
+    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(-0.9f, 0.1f, 0.2f)), NULL, f.scratch);
     assert_true(s.lobes != 0 && s.frame.n.z == 1 && s.frame.t.x > 0.9f);
     check_frame(&s);
 
     /* From behind: black, or turned over about the tangent. */
-    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.1f, 0.1f, -0.9f)), f.scratch);
+    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.1f, 0.1f, -0.9f)), NULL, f.scratch);
     assert_true(s.lobes == 0);
     object->two_sided = 1;
-    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.1f, 0.1f, -0.9f)), f.scratch);
+    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.1f, 0.1f, -0.9f)), NULL, f.scratch);
     assert_true(s.lobes != 0 && s.ng.z == -1 && s.frame.t.x == hit.frame.t.x && s.frame.b.y == -1);
     check_frame(&s);
 
     /* What points above the interpolated normal's horizon but below the surface leaks, and is refused. */
     object->two_sided = 0;
-    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.2f, 0.1f, 0.9f)), f.scratch);
+    mu_shading_begin(&s, &f.scene, &hit, mu_normalise(mu_v3(0.2f, 0.1f, 0.9f)), NULL, f.scratch);
     const mu_vec3 below = mu_normalise(mu_v3(0.9f, 0, -0.1f)), above = mu_normalise(mu_v3(-0.9f, 0, 0.1f));
     assert_true(mu_dot(below, n) > 0 && !mu_shading_agrees(&s, below, mu_to_local(&s.frame, below).z));
     assert_true(mu_dot(above, n) < 0 && !mu_shading_agrees(&s, above, mu_to_local(&s.frame, above).z));

@@ -10,7 +10,11 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
                    mu_error *error) {
     const musurf_material_type *type = out->material.type;
     const musurf_probe *probe = type->extension ? type->extension(MUSURF_PROBE_ID) : NULL;
-    if (out->material.jacobian.map != MU_JACOBIAN_NONE || out->material.plan.needs & MUSURF_NEEDS_SLOTS)
+    const _Bool slots = out->material.plan.needs & MUSURF_NEEDS_SLOTS && !out->material.footprints;
+    if (out->material.one_footprint)
+        return mu_place_fail(place, error,
+                             "shows the flakes of one footprint: its D is not a density. Leave it out");
+    if (out->material.jacobian.map != MU_JACOBIAN_NONE || slots)
         return mu_place_fail(place, error, "varies over the surface");
     if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample)
         return mu_place_fail(place, error, "%s does not offer %s", type->id, MUSURF_PROBE_ID);

@@ -17,6 +17,7 @@
 
 #include "core/render/command.h"
 #include "core/render/explain.h"
+#include "core/render/features.h"
 #include "core/render/image.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
@@ -222,7 +223,10 @@ static int give_image(mu_job *job) {
 static int render(mu_job *job, uint32_t limit) {
     const mu_render_options *options = &job->options;
     mu_error error = new_error(job);
-    const mu_tracer tracer = {.scene = &job->scene, .geometry = job->geometry, .lights = job->lights};
+    const mu_tracer tracer = {.scene = &job->scene,
+                              .geometry = job->geometry,
+                              .lights = job->lights,
+                              .footprints = (mu_features_of(&job->scene) & MU_FEATURE_FOOTPRINTS) != 0};
     const mu_render_plan plan = {.sample = sample,
                                  .context = &tracer,
                                  .scratch = mu_integrator_scratch(&job->scene),

@@ -41,6 +41,7 @@ static uint32_t of_material(const mu_material *material) {
         if (material->plan.lobes & lobes[i][0]) bits |= lobes[i][1];
     if (material->plan.table_bytes) bits |= MU_FEATURE_MATERIAL_TABLES;
     if (material->jacobian.map != MU_JACOBIAN_NONE) bits |= MU_FEATURE_JACOBIANS;
+    if (material->footprints) bits |= MU_FEATURE_FOOTPRINTS;
     return bits;
 }
 

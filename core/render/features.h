@@ -21,6 +21,7 @@
     X(GRIDS,                 "grids",                 "a second material chosen by texture coordinates")               \
     X(TWO_SIDED,             "two_sided",             "frames turned over when seen from behind")                      \
     X(JACOBIANS,             "jacobians",             "a transform per hit from the map's Jacobian, in slots")         \
+    X(FOOTPRINTS,            "footprints",            "the part of the texture that a pixel covers, per hit, in slots")  \
     X(ENVIRONMENT,           "environment",           "OpenImageIO, the image and its sampling table")                 \
     X(STUDIO,                "studio",                "the studio and its sampling table")                             \
     X(CONSTANT,              "constant",              "uniform light from everywhere")                                 \

@@ -17,6 +17,7 @@ typedef struct mu_tracer { /* borrowed, read-only, shared by threads */
     const mu_scene *scene;
     const mu_geometry *geometry;
     const mu_lights *lights;
+    _Bool footprints; /* some material asks for them */
 } mu_tracer;
 
 typedef struct mu_radiance {

@@ -92,7 +92,7 @@ static _Bool vary_transform(mu_material *material, mu_settings *settings, const 
         setting = mu_settings_add(settings, p);
     }
     setting->source = MUSURF_SLOT;
-    setting->slot = 0;
+    setting->slot = MU_SLOT_TRANSFORM;
     setting->values = NULL;
     return 1;
 }
@@ -116,6 +116,32 @@ static uint64_t digest_of(const mu_settings *settings) {
     return digest;
 }
 
+/* The plugin's footprint: the parameter of that kind that may vary. */
+static const musurf_param *find_footprint(const musurf_material_type *type) {
+    for (uint32_t i = 0; i < type->param_count; i++) {
+        const musurf_param *p = mu_type_param(type, i);
+        if (p->kind == MUSURF_FOOTPRINT && (p->flags & MUSURF_MAY_VARY)) return p;
+    }
+    return NULL;
+}
+
+/* Compiled once as it stands; what asks for footprints then is compiled again, with slots for them. */
+static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_place *place,
+                         mu_error *error) {
+    const musurf_param *p = find_footprint(material->type);
+    material->one_footprint = p && mu_settings_find(settings, p);
+    if (!compile(material, settings, place, error) || !describe(material, place, error)) return 0;
+    if (!p || material->one_footprint || !(material->plan.needs & MUSURF_NEEDS_FOOTPRINT)) return 1;
+    musurf_setting *setting = mu_settings_add(settings, p);
+    setting->source = MUSURF_SLOT;
+    setting->slot = MU_SLOT_FOOTPRINT;
+    setting->values = NULL;
+    material->type->release(material->compiled);
+    material->compiled = NULL;
+    material->footprints = 1;
+    return compile(material, settings, place, error) && describe(material, place, error);
+}
+
 _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
     static const char *const reserved[] = {"material", "jacobian", NULL};
     *material = (mu_material){.transform = {1, 0, 0, 1}};
@@ -136,7 +162,7 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
     if (jacobian.value)
         good = read_jacobian(&material->jacobian, &jacobian, error) &&
                vary_transform(material, &settings, place, error);
-    good = good && compile(material, &settings, place, error) && describe(material, place, error);
+    good = good && compile_all(material, &settings, place, error);
     mu_settings_free(&settings);
     if (!good) mu_material_free(material);
     return good;

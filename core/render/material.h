@@ -29,6 +29,8 @@ typedef struct mu_jacobian {
     double amount, exponent;
 } mu_jacobian;
 
+enum { MU_SLOT_TRANSFORM = 0, MU_SLOT_FOOTPRINT = 4, MU_SLOTS = 10 };
+
 typedef struct mu_material {
     const musurf_material_type *type;
     musurf_material *compiled;
@@ -36,6 +38,8 @@ typedef struct mu_material {
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
     uint64_t digest;      /* of the grids among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the Jacobian goes: M = J transform */
+    _Bool footprints;     /* the footprint is pushed through slots[4..9] at each hit */
+    _Bool one_footprint;  /* the material has one of its own */
 } mu_material;
 
 /* The material described by the object at `place`. The plugin's own message about a parameter is put into the

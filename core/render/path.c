@@ -27,6 +27,7 @@ typedef struct mu_arrival {
 typedef struct mu_walk {
     mu_ray ray; /* the next one */
     mu_arrival arrival;
+    mu_cone cone; /* around the ray, where footprints are asked for */
     float throughput[3];
     mu_random random;
     uint32_t event;
@@ -106,7 +107,7 @@ static void add_unshadowed(const mu_walk *walk, const mu_shadow *shadow) {
 }
 
 /* Follows the BSDF: the next ray, its arrival, and what becomes of the throughput. False: the path ends. */
-static _Bool scatter(const mu_shading *shading, mu_walk *walk) {
+static _Bool scatter(const mu_tracer *tracer, const mu_shading *shading, mu_walk *walk) {
     float u[3];
     mu_random_pair(&walk->random, u);
     u[2] = mu_random_one(&walk->random);
@@ -124,6 +125,7 @@ static _Bool scatter(const mu_shading *shading, mu_walk *walk) {
     for (int c = 0; c < 3; c++) walk->throughput[c] *= sample.weight[c];
     walk->arrival = (mu_arrival){shading->hit->p, sample.pdf, (sample.lobe & MUSURF_DELTA_LOBES) != 0};
     walk->ray = mu_geometry_leave(shading->hit, mu_normalise(wi), INFINITY);
+    if (tracer->footprints) walk->cone.spread += 2 * sample.roughness;
     return 1;
 }
 
@@ -135,6 +137,13 @@ static _Bool survives(mu_random *random, float throughput[3]) {
     if (!(mu_random_one(random) < chance)) return 0;
     for (int c = 0; c < 3; c++) throughput[c] /= chance;
     return 1;
+}
+
+/* What the walk sees at once where it arrived; its cone goes on from there. */
+static mu_beam beam_at(const mu_scene *scene, uint32_t event, const mu_hit *hit, mu_walk *walk) {
+    walk->cone.width += walk->cone.spread * hit->distance;
+    return event == 0 ? mu_beam_of_pixel(&scene->camera, &scene->film, hit->p)
+                      : mu_beam_of_cone(walk->cone.width, walk->ray.direction);
 }
 
 /* What happens where the walk's ray arrived: at `hit`, or, if that is NULL, out of the scene. True: walk->ray
@@ -167,7 +176,10 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
     if (event == scene->integrator.depth) return 0;
 
     mu_shading shading;
-    mu_shading_begin(&shading, scene, hit, mu_scale(walk->ray.direction, -1), scratch);
+    mu_beam beam;
+    if (tracer->footprints) beam = beam_at(scene, event, hit, walk);
+    mu_shading_begin(&shading, scene, hit, mu_scale(walk->ray.direction, -1),
+                     tracer->footprints ? &beam : NULL, scratch);
     if (!shading.lobes) return 0; /* black, but it did block the light */
     if (event == 0) {
         shading.type->albedo(shading.closure, out->albedo);
@@ -181,7 +193,7 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
         sample_light(tracer, options, choices, &shading, walk, shadow);
     if (event + 1 == scene->integrator.depth && !mu_lights_met(tracer->lights)) return 0;
     walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
-    if (!scatter(&shading, walk)) return 0;
+    if (!scatter(tracer, &shading, walk)) return 0;
     if (event + 1 >= scene->integrator.roulette && !survives(&walk->random, walk->throughput)) return 0;
     walk->out->rays++;
     return 1;
@@ -208,6 +220,7 @@ static mu_walk start(const mu_tracer *tracer, const mu_path_options *options, ui
     mu_random_pair(&walk.random, u);
     walk.ray = mu_camera_ray(&tracer->scene->camera, &tracer->scene->film, x, y, u);
     walk.arrival = (mu_arrival){walk.ray.origin, 0, 1};
+    if (tracer->footprints) walk.cone = mu_cone_of_pixel(&tracer->scene->camera, &tracer->scene->film);
     return walk;
 }
 

@@ -34,7 +34,7 @@ void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const m
 }
 
 void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
-                      void *closure) {
+                      const mu_beam *beam, void *closure) {
     const mu_material *material = &scene->materials[hit->material].material;
     shading->hit = hit;
     shading->frame = hit->frame;
@@ -55,7 +55,13 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
     }
     const float *slots = NULL;
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
-        mu_shading_jacobian(material, hit, &shading->frame, shading->slots);
+        mu_shading_jacobian(material, hit, &shading->frame, shading->slots + MU_SLOT_TRANSFORM);
+        slots = shading->slots;
+    }
+    if (material->footprints) {
+        float *const footprint = shading->slots + MU_SLOT_FOOTPRINT;
+        for (int i = 0; i < 6; i++) footprint[i] = INFINITY;
+        if (beam) mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
         slots = shading->slots;
     }
     const float direction[3] = {local.x, local.y, local.z};

@@ -12,7 +12,7 @@
 #ifndef MU_SHADING_H
 #define MU_SHADING_H
 
-#include "core/render/geometry.h"
+#include "core/render/footprint.h"
 
 typedef struct mu_shading {
     const mu_hit *hit;
@@ -21,12 +21,14 @@ typedef struct mu_shading {
     const musurf_material_type *type;
     void *closure;
     uint32_t lobes; /* that can be non-zero; 0: black from here */
-    float slots[4]; /* M of this point, where the material's map varies */
+    float slots
+        [MU_SLOTS]; /* M of this point, where the material's map varies; its footprint, where that is wanted */
 } mu_shading;
 
-/* [any] `shading` and `closure` are valid as long as each other and `hit`. wo: unit, toward the viewer. */
+/* [any] `shading` and `closure` are valid as long as each other and `hit`. wo: unit, toward the viewer. beam: what is seen
+ * at once (footprint.h); NULL: from afar. */
 void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
-                      void *closure);
+                      const mu_beam *beam, void *closure);
 
 /* M = P J P^-1 transform: J, a map of the texture square, taken to the tangent plane by P = [dpdu dpdv] in
  * the frame (t, b). Without usable UVs, or where J is not finite, M = transform. Rows [m00 m01], [m10 m11].

@@ -131,6 +131,10 @@ const char *abi_words(const musurf_material_type *type, int index) {
         "ndf=beckmann alpha=0.3 sampler=ndf stretch=0.5",
         "ndf=tabulated histogram=3,2,-0.8,1,-0.5,0.9,1,2,0.5,0,3,1 transform=1,0.5,-0.2,0.8",
         "ndf=gtr alpha=0.2 gamma=1.3 transform=@2",
+        "ndf=discrete_ggx alpha=0.3 transform=1,2,0,1 flakes.density=1e3 flakes.cone=0.1 "
+        "footprint=3,4,0.2,0,0,0.1",
+        "ndf=discrete_beckmann alpha=0.2 transform=@0 footprint=@4",
+        "ndf=discrete_ggx alpha=0.2 flakes.density=1e4 footprint=@2",
         NULL};
     return strcmp(type->id, "template.lambert") ? microfacet[index] : lambert[index];
 }

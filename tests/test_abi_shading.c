@@ -24,14 +24,16 @@ typedef struct subject {
     const musurf_material_type *type;
     musurf_material *material;
     musurf_plan plan;
-    _Bool visible; /* draws visible normals: weights are F G2/G1 <= 1; those of D cos may exceed it */
+    _Bool visible; /* draws visible normals: weights are F G2/G1 <= 1; those of D cos may exceed it, and a
+                      * few flakes */
 } subject;
 
 static void each_subject(void (*body)(const subject *)) {
     for (int t = 0; t < ABI_TYPES; t++)
         for (int i = 0; abi_words(abi_type(t), i); i++) {
             subject s = {.type = abi_type(t)};
-            s.visible = !strstr(abi_words(s.type, i), "sampler=ndf");
+            s.visible =
+                !strstr(abi_words(s.type, i), "sampler=ndf") && !strstr(abi_words(s.type, i), "footprint=");
             s.material = abi_material(s.type, NULL, abi_words(s.type, i));
             assert_non_null(s.material);
             s.plan = abi_plan(s.type, s.material);

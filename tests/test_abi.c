@@ -10,6 +10,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -257,6 +258,58 @@ static void plans_are_written_no_further_than_their_size(void **state) {
     }
 }
 
+/* A plan says whether a footprint is wanted, and setup reads one from its slots; without, the surface is as from afar. */
+static void footprints_are_asked_for(void **state) {
+    (void)state;
+    static const struct {
+        const char *words;
+        uint32_t needs, slots;
+    } cases[] = {
+        {"ndf=discrete_ggx", MUSURF_NEEDS_FOOTPRINT, 0},
+        {"ndf=discrete_ggx footprint=@3", MUSURF_NEEDS_FOOTPRINT | MUSURF_NEEDS_SLOTS, 9},
+        {"ndf=discrete_ggx footprint=@0 transform=@6", MUSURF_NEEDS_FOOTPRINT | MUSURF_NEEDS_SLOTS, 10},
+        {"ndf=discrete_ggx footprint=0.5,0.5,0.01,0,0,0.01", 0, 0},
+        {"ndf=discrete_beckmann alpha=0 footprint=@3", 0, 0},
+        {"ndf=ggx", 0, 0}};
+    const musurf_material_type *type = abi_type(1);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        musurf_material *material = abi_material(type, NULL, cases[i].words);
+        assert_non_null(material);
+        const musurf_plan plan = abi_plan(type, material);
+        assert_int_equal(plan.needs & ~(uint32_t)MUSURF_NEEDS_TANGENT, cases[i].needs);
+        assert_int_equal(plan.slot_floats, cases[i].slots);
+        type->release(material);
+    }
+    /* in slots, constant, and none: the first two are the same bits, the last is what NULL and infinity come to */
+    static const float near[6] = {0.5f, 0.25f, 0.125f, 0, 0, 0.125f},
+                       far[6] = {0.5f, 0.25f, INFINITY, 0, 0, 1};
+    static const struct {
+        const char *words;
+        const float *slots;
+    } ways[] = {{" footprint=@0", near},
+                {" footprint=0.5,0.25,0.125,0,0,0.125", NULL},
+                {"", NULL},
+                {" footprint=@0", NULL},
+                {" footprint=@0", far}};
+    const float wo[3] = {0.6f, 0, 0.8f}, wi[3] = {-0.48f, 0.36f, 0.8f};
+    musurf_value value[5];
+    for (int i = 0; i < 5; i++) {
+        char words[160];
+        snprintf(words, sizeof words, "ndf=discrete_ggx alpha=0.3 flakes.density=1e5 flakes.cone=0.1%s",
+                 ways[i].words);
+        musurf_material *material = abi_material(type, NULL, words);
+        assert_non_null(material);
+        _Alignas(64) unsigned char closure[512];
+        assert_true(type->setup(material, wo, ways[i].slots, 0, closure) != 0);
+        type->eval(closure, wi, MUSURF_ALL_LOBES, &value[i]);
+        type->release(material);
+    }
+    assert_memory_equal(&value[0], &value[1], sizeof value[0]);
+    assert_memory_equal(&value[2], &value[3], sizeof value[0]);
+    assert_memory_equal(&value[2], &value[4], sizeof value[0]);
+    assert_true(value[0].f[0] != value[2].f[0] && value[0].pdf == value[2].pdf);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_are_sound),
@@ -264,6 +317,7 @@ int main(void) {
         cmocka_unit_test(hosts_of_any_size_work),
         cmocka_unit_test(settings_of_another_header_work),
         cmocka_unit_test(plans_are_written_no_further_than_their_size),
+        cmocka_unit_test(footprints_are_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -207,6 +207,40 @@ class Meaning(unittest.TestCase):
             self.assertIn(f'"{key}": {value:.17g}', out)
 
 
+class Discrete(unittest.TestCase):
+    def ask(self, precision, **parameters):
+        material = microfacet(alpha=0.3, transform=[[1, 0.5], [0, 1]], **parameters)
+        return answers(musurf("eval", "--precision", precision,
+                              stdin=[{"material": material, "wo": [0.6, 0, 0.8], "wi": [-0.5, 0.2, 0.8], "wm": [0.1, 0, 1]}]))[0]
+
+    def test_a_footprint_shows_flakes_and_no_footprint_none(self):
+        """D and f are multiples, by whole numbers of flakes over their mean; what the sampler follows is smooth."""
+        flakes = {"density": 1e4, "cone": 0.1}
+        for precision, near in (("double", 1e-12), ("float", 1e-4)):
+            smooth, afar = (self.ask(precision, ndf=ndf, **more) for ndf, more in (("ggx", {}), ("discrete_ggx", {"flakes": flakes})))
+            shares = set()
+            for k in range(40):
+                few = self.ask(precision, ndf="discrete_ggx", flakes=flakes, footprint=[[k, 0.3], [0.05, 0.01], [0, 0.04]])
+                for key in ("D", "Dv", "G1", "G2", "sigma", "pdf", "f"):
+                    self.assertAlmostEqual(sum(afar[key]) / sum(smooth[key]) if key == "f" else afar[key] / smooth[key], 1,
+                                           delta=near)
+                    if key not in ("D", "f"):
+                        self.assertEqual(few[key], afar[key])
+                shares.add(few["D"] / afar["D"])
+            step = min(share for share in shares if share > 0)  # 1 / E[K], or a small multiple
+            self.assertGreater(len(shares), 3)
+            for share in shares:
+                self.assertLess(min(abs(share / step * n - round(share / step * n)) for n in (1, 2, 3)), 10 * near, shares)
+
+    def test_what_is_refused(self):
+        for parameters, words in (({"ndf": "ggx", "flakes": {"density": 3}}, "flakes.density: belongs to discrete_ggx"),
+                                  ({"ndf": "ggx", "footprint": [[0, 0], [1, 0], [0, 1]]}, "footprint: belongs to discrete_ggx"),
+                                  ({"ndf": "discrete_ggx", "flakes": {"density": 0}}, "flakes.density: is 0; it must be above 0"),
+                                  ({"ndf": "discrete_ggx", "flakes": {"seed": 1.5}}, "flakes.seed: 1.5 is no whole number"),
+                                  ({"ndf": "discrete_ggx", "footprint": [[0, 0], [1, 0]]}, "footprint: a footprint is its centre")):
+            self.assertIn(words, self.ask("double", **parameters)["error"])
+
+
 class Partner(unittest.TestCase):
     def test_each_answer_comes_before_the_next_question(self):
         child = subprocess.Popen([MUSURF, "eval"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)

@@ -8,8 +8,9 @@
 
 #include "plugin/musurf_compiled.h"
 
-/* Slots hold the transform, or the footprint, or both. */
-static void set_footprint(const parsed *p, const float *slots, int in_float, bound *b) {
+/* Out of line: a setup without flakes shall not pay for its registers. */
+__attribute__((noinline)) static void set_footprint(const parsed *p, const float *slots, int in_float,
+                                                    bound *b) {
     double f[6];
     if (p->footprint_from == FOOTPRINT_SLOT && !slots) return;
     for (int i = 0; i < 6; i++)

@@ -114,4 +114,19 @@ static inline double tabulated_sigma(const mu_definition *d, const double w[3]) 
     return sum;
 }
 
+/* By the core. */
+static inline double tabulated_sigma_d(const tabulated_surfaces *s, const double w[3]) {
+    const double up[3] = {0, 0, 1};
+    mu_closure_d c;
+    assert_true(mu_bind_d(s->d, up, NULL, &c));
+    return mu_view_d(&c, w).sigma;
+}
+
+static inline double tabulated_density_d(const tabulated_surfaces *s, const double m[3]) {
+    const double up[3] = {0, 0, 1};
+    mu_closure_d c;
+    assert_true(mu_bind_d(s->d, up, NULL, &c));
+    return mu_normal_d(&c, m).D;
+}
+
 #endif

@@ -62,7 +62,8 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
         return;
     }
     real u0 = u[0], u1 = u[1], accept = u[2];
-    for (int i = 0; i < 128; i++) {
+    const int tries = w[2] < 0 ? FROM_BELOW : 128;
+    for (int i = 0; i < tries; i++) {
         cap_visible(w, 1, u0, u1, n);
         const real n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         if (accept * g[GTR_BOUND] < density(b, n, n2)) return;

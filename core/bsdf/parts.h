@@ -28,7 +28,7 @@ static inline void visible_by_parts(const parts *p, const base *b, const real w[
     const real along[2] = {r > 0 ? w[0] / r : 1, r > 0 ? w[1] / r : 0};
     const real first = larger(z, 0), total = first + r * p->horizon;
     real u0 = u[0], u1 = u[1], pick = u[2];
-    for (int k = 0; k < 1024; k++) {
+    for (int k = 0; k < (z < 0 ? FROM_BELOW : 1024); k++) {
         real part[2], sine, cosine, shown = 1;
         const int plain = pick * total < first;
         if (plain) {

@@ -21,6 +21,8 @@
  *       a normal by D cos, Eq. (25); any length.
  *   void sample_visible(const base *b, const real w[3], const real u[3], real n[3])
  *       a normal by the visible normals from w, Eq. (27); w and n of any length, w.z of any sign.
+ *       Below the horizon a loop of rejection may need 1/sigma(w) tries; it is met as seldom, so that its mean cost is
+ *       bounded still: FROM_BELOW tries.
  *   size_t table_bytes(const mu_definition *d)
  *   double prepare(base *b, const mu_definition *d, void *table)
  *       fills b and the table; returns the slope unit.
@@ -32,7 +34,7 @@
 #include "core/bsdf/flakes.h"
 #include "core/bsdf/linear_map.h"
 
-enum { MU_SHAPE = 20 };
+enum { MU_SHAPE = 20, FROM_BELOW = 65536 };
 
 enum {
     PICKS = 1,      /* sample_visible uses u[2] */
@@ -65,6 +67,8 @@ struct MU(mu_kernel) {
     double (*prepare)(base *b, const mu_definition *d, void *table);
     void (*view)(const closure *c, const real w[3], real *sigma,
                  real *lambda); /* view_z sigma_M, view_z cos Lambda_M */
+    /* a unit normal by the visible normals from any direction, also from below; 0 if there is none */
+    int (*normal)(const closure *c, const real from[3], const real u[3], real m[3]);
     real (*density)(const closure *c, const real wm[3]);
     real (*shadowing)(const closure *c, const real i[3], int transmitted); /* G2 */
     void (*eval)(const closure *c, const real wi[3], value *out);

@@ -37,6 +37,8 @@ typedef enum plan_kind {
     PLAN_GENERAL, /* any M */
     PLAN_UNIFORM, /* M is a multiple of 1: no matrix is multiplied */
     PLAN_FULL, /* any M, with all that the two others leave out: tilt, masking forms, refraction, mixed samplers */
+    PLAN_COMPENSATED, /* the full plan, and multiple scattering by tables of what it loses (compensated.c) */
+    PLAN_WALK,        /* the full plan, and multiple scattering by random walks (walk.c) */
     PLAN_COUNT
 } plan_kind;
 

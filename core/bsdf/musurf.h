@@ -64,6 +64,14 @@ typedef enum mu_masking_form {
     MU_DIRECTION_CORRELATED, /* 1 / (1 + max Lambda + (1 - g) min Lambda), g = 1 where both come from one azimuth */
     MU_MASKING_COUNT
 } mu_masking_form;
+/* What becomes of light that meets the microsurface more than once. */
+typedef enum mu_scattering {
+    MU_SINGLE,      /* it is lost: rough surfaces are too dark */
+    MU_COMPENSATED, /* a smooth lobe adds what is missing, from tables of the very surface; M must be the definition's:
+                       bound with an M of the point, the surface scatters singly */
+    MU_RANDOM_WALK, /* light is followed on the Smith microsurface: exact, but f is an unbiased estimate, noisy */
+    MU_SCATTERING_COUNT
+} mu_scattering;
 typedef enum mu_fresnel_kind {
     MU_FRESNEL_NONE,
     MU_FRESNEL_SCHLICK,
@@ -104,6 +112,8 @@ typedef struct mu_definition {
      * after M: radians, in (0, pi/2]. */
     double flake_density, flake_cone;
     uint64_t flake_seed;
+    mu_scattering multiple;
+    unsigned salt; /* of the random walk's hash: another salt, another noise */
 } mu_definition;
 
 mu_definition mu_definition_default(void);

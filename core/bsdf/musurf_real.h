@@ -90,6 +90,10 @@ void MU_SUFFIX(mu_sample_wi)(const MU_SUFFIX(mu_closure) * closure, const MU_REA
 void MU_SUFFIX(mu_sample_with)(const MU_SUFFIX(mu_closure) * closure, mu_sampler sampler, const MU_REAL u[3],
                                MU_SUFFIX(mu_sample) * out);
 
+/* Directional albedo for F = 1 (with transmission: of both sides) of single scattering toward w, on the side of w, from the
+ * tables of a compensated surface, and its cosine-weighted average over that side; 1 where there are no tables. */
+MU_REAL MU_SUFFIX(mu_albedo)(const MU_SUFFIX(mu_surface) * surface, const MU_REAL w[3], MU_REAL *average);
+
 MU_SUFFIX(mu_masking) MU_SUFFIX(mu_view)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL w[3]);
 MU_SUFFIX(mu_normal_values) MU_SUFFIX(mu_normal)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wm[3]);
 MU_SUFFIX(mu_pair_values) MU_SUFFIX(mu_pair)(const MU_SUFFIX(mu_closure) * closure, const MU_REAL wi[3]);

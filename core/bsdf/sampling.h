@@ -5,14 +5,14 @@
  * transformed.h).
  */
 
-/* A micronormal: n in the distribution's own space; m in the surface's, of unit length. D_M comes from n itself, not from
+/* A micronormal, seen from `from` if `visible`: n in the distribution's own space; m in the surface's, of unit length. D_M comes from n itself, not from
  * M^T m: exact however near to singular M is. 0 if there is none. */
-static inline int draw_normal(plan_kind plan, const closure *c, int visible, const real u[3], real m[3],
-                              real *d) {
+static inline int draw_normal(plan_kind plan, const closure *c, const real from[3], int visible,
+                              const real u[3], real m[3], real *d) {
     real n[3];
     if (visible) {
         real w[3];
-        map_view(plan, &c->map, c->wo, w);
+        map_view(plan, &c->map, from, w);
         sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
     } else {
         sample_slope(&c->surface->base, u, n); /* Eq. (25) */
@@ -87,7 +87,7 @@ static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sample
         moved[2] = (u[2] - share) / (1 - share);
     }
     const int visible = sampler == MU_SAMPLE_VISIBLE || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
-    if (!draw_normal(plan, c, visible, moved, m, &d)) return;
+    if (!draw_normal(plan, c, c->wo, visible, moved, m, &d)) return;
     for (int k = 0; k < 3; k++) out->wm[k] = plan == PLAN_FULL ? c->side * m[k] : m[k];
     const real cosine = m[0] * c->wo[0] + m[1] * c->wo[1] + m[2] * c->wo[2];
     if (!(cosine > 0)) return;

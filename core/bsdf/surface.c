@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* surface.c: the table of distributions, and what musurf.h offers over it. */
-#include "core/bsdf/distribution.h"
+#include "core/bsdf/multiple.h"
 #include "core/bsdf/tabulated.h"
 
 extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr), MU(mu_kernel_std),
@@ -76,16 +76,17 @@ static int is_discrete(const mu_definition *d) {
 /* Does it need what only the full plan has? */
 static int needs_full(const mu_definition *d) {
     return d->tilt[0] != 0 || d->tilt[1] != 0 || d->transmission || d->masking != MU_HEIGHT_CORRELATED ||
-           d->sampler >= MU_SAMPLE_MIXED;
+           d->sampler >= MU_SAMPLE_MIXED || d->multiple == MU_COMPENSATED;
 }
 
-static size_t header_bytes(void) {
-    return (sizeof(surface) + 63) / 64 * 64;
+static size_t multiple_bytes(const plan *p, const mu_definition *d) {
+    return p->kernel ? MU(multiple_bytes)(d) : 0; /* a mirror scatters once */
 }
 
 size_t MU(mu_surface_bytes)(const mu_definition *definition) {
     const plan p = choose(definition);
-    return header_bytes() + (p.kernel ? p.kernel->table_bytes(&p.definition) : 0);
+    return surface_head_bytes() + multiple_bytes(&p, definition) +
+           (p.kernel ? p.kernel->table_bytes(&p.definition) : 0);
 }
 
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
@@ -110,8 +111,9 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
         s->fresnel.b[i] = R(d->k[i]);
     }
     if (!p.kernel) return s;
-    s->table_bytes = p.kernel->table_bytes(&p.definition);
-    s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + header_bytes());
+    s->table_bytes = p.kernel->table_bytes(&p.definition) + multiple_bytes(&p, d);
+    const size_t before = surface_head_bytes() + multiple_bytes(&p, d);
+    s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + before);
     if (is_discrete(d)) {
         /* the lattice knows nothing of M: the same flakes lie on the microsurface however M deforms it */
         s->flake_cdf = d->ndf == MU_DISCRETE_GGX ? mu_flake_cdf_ggx : mu_flake_cdf_beckmann;
@@ -119,6 +121,9 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
         s->flakes = mu_flakes_make(d->flake_density, d->flake_cone / s->unit, d->flake_seed);
     }
     if (is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
+    if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
+    MU(multiple_make)(s, d);
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
     const int is_uniform = s->kernel == p.kernel && !(p.kernel->traits & ANISOTROPIC) && scale <= DBL_MAX &&
@@ -130,6 +135,15 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
 
 size_t MU(mu_surface_table_bytes)(const surface *s) {
     return s->table_bytes;
+}
+real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
+    *average = 1;
+    if (!s->kernel || s->kernel != s->kernel->plans[PLAN_COMPENSATED]) return 1;
+    const mu_albedo *t = multiple_of(s)->albedo;
+    const mu_albedo_side *side = &t->side[s->transmission && w[2] < 0];
+    const float up[3] = {(float)w[0], (float)w[1], (float)w[2]}, down[3] = {-up[0], -up[1], -up[2]};
+    *average = 1 - R(side->average);
+    return 1 - R(albedo_lost(side, albedo_locate(t, w[2] < 0 ? down : up)));
 }
 const char *MU(mu_surface_name)(const surface *s) {
     return s->name;
@@ -172,8 +186,9 @@ void MU(mu_blur)(closure *c, real alpha) {
     } else {
         /* gtr of gamma < 1 is measured in slopes of 1, but alpha is what there is of a lobe */
         const kernel *const ggx = kernels[MU_GGX];
-        const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR],
-                  full = c->kernel == c->kernel->plans[PLAN_FULL];
+        const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR];
+        int same = PLAN_FULL; /* GGX of the same plan; M is no multiple of 1 any more */
+        while (same < PLAN_COUNT && c->kernel != c->kernel->plans[same]) same++;
         const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;
         map wide = c->map;
         if (c->kernel->plans[PLAN_GENERAL] == kernels[MU_TABULATED]) {
@@ -182,7 +197,7 @@ void MU(mu_blur)(closure *c, real alpha) {
         }
         if (!MU(map_widen)(&wide, roughness, (double)alpha)) return;
         c->map = wide;
-        c->kernel = full ? ggx->plans[PLAN_FULL] : ggx;
+        c->kernel = ggx->plans[same < PLAN_COUNT ? same : PLAN_GENERAL];
     }
     c->alpha = larger(c->alpha, alpha);
     c->has_footprint = 0;

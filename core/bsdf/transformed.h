@@ -12,6 +12,7 @@
  * alone and appears once in the first two.
  */
 #include "core/bsdf/distribution.h"
+#include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
 #include "core/bsdf/shadowing.h"
 
@@ -101,12 +102,31 @@ FOR_PLANS(general, PLAN_GENERAL)
 FOR_PLANS(uniform, PLAN_UNIFORM)
 FOR_PLANS(full, PLAN_FULL)
 
-static const kernel uniform, full;
-extern const kernel KERNEL_NAME(DISTRIBUTION);
-#define KERNEL(name)                                                                                         \
-    {                                                                                                        \
-        STRING(DISTRIBUTION), {&KERNEL_NAME(DISTRIBUTION), &uniform, &full}, TRAITS, table_bytes, prepare,   \
-            view_##name, density_##name, shadowing_##name, eval_##name, sample_##name                        \
+static int normal_full(const closure *c, const real from[3], const real u[3], real m[3]) {
+    real d;
+    return draw_normal(PLAN_FULL, c, from, 1, u, m, &d);
+}
+
+static const kernel uniform, full, compensated, walk;
+
+/* Multiple scattering, around the full plan. */
+#define AROUND_FULL(name)                                                                                    \
+    static void eval_##name(const closure *c, const real wi[3], value *out) {                                \
+        MU(name##_eval)(&full, c, wi, out);                                                                  \
+    }                                                                                                        \
+    static void sample_##name(const closure *c, mu_sampler sampler, const real u[3], sample *out) {          \
+        MU(name##_sample)(&full, c, sampler, u, out);                                                        \
     }
-static const kernel uniform = KERNEL(uniform), full = KERNEL(full);
-const kernel KERNEL_NAME(DISTRIBUTION) = KERNEL(general);
+AROUND_FULL(compensated)
+AROUND_FULL(walk)
+
+extern const kernel KERNEL_NAME(DISTRIBUTION);
+#define KERNEL(name, plan)                                                                                   \
+    {                                                                                                        \
+        STRING(DISTRIBUTION), {&KERNEL_NAME(DISTRIBUTION), &uniform, &full, &compensated, &walk}, TRAITS,    \
+            table_bytes, prepare, view_##plan, normal_full, density_##plan, shadowing_##plan, eval_##name,   \
+            sample_##name                                                                                    \
+    }
+static const kernel uniform = KERNEL(uniform, uniform), full = KERNEL(full, full),
+                    compensated = KERNEL(compensated, full), walk = KERNEL(walk, full);
+const kernel KERNEL_NAME(DISTRIBUTION) = KERNEL(general, general);

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * compensated.c: single scattering and a smooth lobe that makes up for what it loses, after Kelemen & Szirmay-Kalos 2001
+ * and Kulla & Conty 2017, for any distribution under any constant map, with tilt, on both sides of what transmits.
+ *
+ * With lost(w) = 1 - E(w) as albedo.h interpolates it, and A its cosine-weighted average over the side that wi is on,
+ *     f_ms = stays lost(wo) lost(wi) / (pi A) F_ms        reflected
+ *     f_ms = (1 - stays) lost(wo) lost(wi) / (pi A)       transmitted, importance; over eta², eta = n_i/n_o, radiance
+ * which is reciprocal and returns all that single scattering loses when F_ms = 1. F_ms = F²E / (1 - F (1 - E)) of averages
+ * over the hemisphere: light that met two facets or more (Kulla & Conty 2017; F² by Hill 2018). `stays` is shared out as
+ * walks on this very surface end (albedo.c).
+ *
+ * Sampled by one of both lobes, as likely as each sends light on; pdf is that of the mixture. Where the surface is bound
+ * with an M of the point, tables do not hold, and scattering is single.
+ */
+#include "core/bsdf/multiple.h"
+
+/* The lobe toward wi, and the densities by which both lobes are drawn. */
+typedef struct lobe {
+    real f[3];          /* importance, if transmitted */
+    real chosen, pdf;   /* the probability of this lobe, and its density of wi */
+    real back, reverse; /* the same from wi to wo */
+} lobe;
+
+static int below(const closure *c) {
+    return c->side < 0;
+}
+
+/* How likely it is drawn, from a direction that loses `lost`. */
+static real chance(const multiple *m, real lost) {
+    const real often = lost * (m->repeated[0] + m->repeated[1] + m->repeated[2]);
+    const real once = (1 - lost) * (m->average[0] + m->average[1] + m->average[2]);
+    return often > 0 ? often / (often + once) : 0;
+}
+
+/* i: seen from the side it is on, i.z > 0. */
+static lobe lobe_toward(const closure *c, const multiple *m, const real i[3], int transmitted) {
+    const mu_albedo *t = m->albedo;
+    const int other = below(c) ^ transmitted;
+    const mu_albedo_side *from = &t->side[below(c)], *to = &t->side[other];
+    const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]},
+                i_f[3] = {(float)i[0], (float)i[1], (float)i[2]};
+    const albedo_place at_o = albedo_locate(t, o_f), at_i = albedo_locate(t, i_f);
+    const real lost_o = R(albedo_lost(from, at_o)), lost_i = R(albedo_lost(to, at_i));
+    const real share = R(transmitted ? 1 - from->stays : from->stays),
+               share_back = R(transmitted ? 1 - to->stays : to->stays);
+    const real transmits = R(c->surface->transmission);
+    lobe l = {.chosen = transmits > 0 ? lost_o : chance(m, lost_o),
+              .back = transmits > 0 ? lost_i : chance(m, lost_i),
+              .pdf = share * R(albedo_density(to, at_i)),
+              .reverse = share_back * R(albedo_density(from, at_o))};
+    for (int k = 0; k < 3; k++) l.f[k] = share * lost_o * (lost_i / R(to->average)) * R(INV_PI) * m->repeated[k];
+    return l;
+}
+
+static int facing(const closure *c, const real wi[3], real i[3]) {
+    const int transmitted = c->side * wi[2] < 0;
+    for (int k = 0; k < 3; k++) i[k] = (transmitted ? -c->side : c->side) * wi[k];
+    return transmitted;
+}
+
+static real radiance_factor(const closure *c, int transmitted) {
+    return transmitted && !c->importance ? 1 / square(c->eta) : 1;
+}
+
+static real mix(real chosen, real pdf, real single) {
+    return smaller(chosen * pdf + (1 - chosen) * single, REAL_MAX);
+}
+
+void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3], value *out) {
+    real i[3];
+    full->eval(c, wi, out);
+    const int transmitted = facing(c, wi, i);
+    if (!(i[2] > 0) || (transmitted && !c->surface->transmission)) return;
+    const lobe l = lobe_toward(c, multiple_of(c->surface), i, transmitted);
+    for (int k = 0; k < 3; k++)
+        out->f[k] = smaller(out->f[k] + l.f[k] * radiance_factor(c, transmitted), REAL_MAX);
+    out->pdf = mix(l.chosen, l.pdf, out->pdf);
+    out->pdf_reverse = mix(l.back, l.reverse, out->pdf_reverse);
+}
+
+/* A direction of the smooth lobe, with what single scattering sends there too. */
+static void sample_lobe(const kernel *full, const closure *c, const real u[3], sample *out) {
+    const multiple *m = multiple_of(c->surface);
+    const mu_albedo_side *from = &m->albedo->side[below(c)];
+    const int transmitted = !(u[2] < R(from->stays));
+    float w[3];
+    mu_albedo_draw(m->albedo, &m->albedo->side[below(c) ^ transmitted], (float)u[0], (float)u[1], w);
+    const real turn = transmitted ? -c->side : c->side;
+    for (int k = 0; k < 3; k++) out->wi[k] = turn * R(w[k]), out->wm[k] = k < 2 ? 0 : c->side;
+    value v;
+    MU(compensated_eval)(full, c, out->wi, &v);
+    if (!(v.pdf > 0)) return;
+    for (int k = 0; k < 3; k++)
+        out->f[k] = v.f[k], out->weight[k] = smaller(v.f[k] * (fabs(out->wi[2]) / v.pdf), REAL_MAX);
+    out->pdf = v.pdf, out->pdf_reverse = v.pdf_reverse;
+    out->transmitted = transmitted, out->eta = transmitted ? c->eta : 1;
+    out->rejected = 0;
+}
+
+void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sampler, const real u[3],
+                            sample *out) {
+    const multiple *m = multiple_of(c->surface);
+    const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]};
+    const real lost = R(albedo_lost(&m->albedo->side[below(c)], albedo_locate(m->albedo, o_f)));
+    const real chosen = c->surface->transmission ? lost : chance(m, lost);
+    real moved[3] = {u[0], u[1], u[2]};
+    if (u[2] < chosen) {
+        *out = (sample){.rejected = 1, .eta = 1};
+        moved[2] = u[2] / chosen;
+        sample_lobe(full, c, moved, out);
+        return;
+    }
+    moved[2] = smaller((u[2] - chosen) / (1 - chosen), 1 - R(0.5) * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON));
+    full->sample(c, sampler, moved, out);
+    if (out->rejected) return;
+    if (out->delta) {
+        out->pdf *= 1 - chosen, out->pdf_reverse *= 1 - chosen;
+        for (int k = 0; k < 3; k++) out->weight[k] /= 1 - chosen;
+        return;
+    }
+    real i[3];
+    const int transmitted = facing(c, out->wi, i);
+    const lobe l = lobe_toward(c, m, i, transmitted);
+    const real pdf = larger(mix(chosen, l.pdf, out->pdf), REAL_MIN), single = out->pdf / pdf;
+    for (int k = 0; k < 3; k++) {
+        const real f = l.f[k] * radiance_factor(c, transmitted);
+        out->f[k] = smaller(out->f[k] + f, REAL_MAX);
+        out->weight[k] = out->weight[k] * single + f * (i[2] / pdf);
+    }
+    out->pdf = pdf;
+    out->pdf_reverse = mix(l.back, l.reverse, out->pdf_reverse);
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* multiple.c: makes what a surface keeps for multiple scattering. */
+#include "core/bsdf/multiple.h"
+
+static size_t padded(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
+}
+
+size_t MU(multiple_bytes)(const mu_definition *d) {
+    if (d->multiple == MU_SINGLE) return 0;
+    const size_t head = padded(sizeof(multiple));
+    return d->multiple == MU_RANDOM_WALK ? head : head + padded(albedo_bytes(d)) + padded(mu_albedo_scratch(d));
+}
+
+/* 2 F(mu) mu dmu by the midpoint rule: 1e-4 and better, kinks at the critical angle included. */
+static void average_fresnel(const fresnel *f, real eta, real out[3]) {
+    double sum[3] = {0};
+    const int count = 256;
+    for (int i = 0; i < count; i++) {
+        real F[3];
+        const double mu = (i + 0.5) / count;
+        MU(fresnel_eval)(f, eta, R(mu), F);
+        for (int k = 0; k < 3; k++) sum[k] += (double)F[k] * 2 * mu / count;
+    }
+    for (int k = 0; k < 3; k++) out[k] = R(sum[k]);
+}
+
+void MU(multiple_average)(const surface *s, real average[3]) {
+    average_fresnel(&s->fresnel, s->fresnel.a[0], average);
+    if (!s->transmission) return;
+    real below[3];
+    average_fresnel(&s->fresnel, 1 / s->fresnel.a[0], below);
+    average[1] = below[0];
+}
+
+void MU(multiple_make)(surface *s, const mu_definition *d) {
+    if (d->multiple == MU_SINGLE) return;
+    char *memory = (char *)s + surface_head_bytes();
+    multiple *m = (void *)memory;
+    *m = (multiple){.salt = d->salt, .repeated = {1, 1, 1}};
+    MU(multiple_average)(s, m->average);
+    if (d->multiple == MU_RANDOM_WALK) return;
+    mu_albedo *albedo = (void *)(memory + padded(sizeof *m));
+    mu_albedo_make(d, albedo, (char *)albedo + padded(albedo_bytes(d)));
+    m->albedo = albedo;
+    const real E = 1 - R(albedo->side[0].average);
+    for (int k = 0; k < 3 && !d->transmission; k++) { /* Kulla & Conty 2017, with Hill's second F (2018) */
+        const real F = m->average[k];
+        m->repeated[k] = F * F * E / (1 - F * (1 - E));
+    }
+}

@@ -16,8 +16,8 @@
 static const struct base_case {
     mu_ndf ndf;
     double alpha, gamma, exponent;
-} bases[] = {{MU_GGX, 0.05, 2, 0},  {MU_GGX, 1, 2, 0},    {MU_BECKMANN, 0.6, 2, 0}, {MU_GTR, 0.3, 0.4, 0}, {MU_GTR, 0.8, 4, 0},
-             {MU_STD, 0.7, 1.7, 0}, {MU_PHONG, 0, 0, 4.0}, {MU_SHEEN, 0.4, 2, 0}};
+} bases[] = {{MU_GGX, 0.05, 2, 0}, {MU_GGX, 1, 2, 0},     {MU_BECKMANN, 0.6, 2, 0}, {MU_GTR, 0.3, 0.4, 0},
+             {MU_GTR, 0.8, 4, 0},  {MU_STD, 0.7, 1.7, 0}, {MU_PHONG, 0, 0, 4.0},    {MU_SHEEN, 0.4, 2, 0}};
 static const double maps[][4] = {{1, 0, 0, 1}, {1, 2, 0, 1}, {-1, 0.3, 0.2, 0.6}};
 enum { BASES = sizeof bases / sizeof bases[0], MAPS = sizeof maps / sizeof maps[0] };
 
@@ -29,8 +29,8 @@ typedef struct scene {
 } scene;
 
 static mu_definition definition_of(int base, int m, mu_scattering multiple) {
-    mu_definition d = bsdf_definition(bases[base].ndf, bases[base].alpha, bases[base].gamma, maps[m][0], maps[m][1],
-                                      maps[m][2], maps[m][3]);
+    mu_definition d = bsdf_definition(bases[base].ndf, bases[base].alpha, bases[base].gamma, maps[m][0],
+                                      maps[m][1], maps[m][2], maps[m][3]);
     d.exponent = bases[base].exponent;
     d.multiple = multiple;
     return d;
@@ -244,8 +244,10 @@ static void compensation_is_pointwise(void **state) {
     uniform u = {26};
     for (int k = 0; k < 12; k++) {
         mu_definition d = definition_of(k % BASES, k % MAPS, MU_COMPENSATED);
-        if (k % 2) d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
-        else d.fresnel = MU_FRESNEL_CONDUCTOR;
+        if (k % 2)
+            d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
+        else
+            d.fresnel = MU_FRESNEL_CONDUCTOR;
         void *memory = aligned_alloc(64, (mu_surface_bytes_d(&d) + 63) / 64 * 64);
         mu_surface_d *s = mu_surface_make_d(&d, memory);
         for (int i = 0; i < 100; i++) {
@@ -265,8 +267,8 @@ static void compensation_is_pointwise(void **state) {
             if (!mu_bind_d(s, x.wi, NULL, &back)) continue;
             mu_eval_d(&back, wo, &r);
             const double scale = x.transmitted ? 1 / (x.eta * x.eta) : 1;
-            bsdf_near(r.f[0] * scale, e.f[0], 1e-5);
-            bsdf_near(r.pdf, e.pdf_reverse, 1e-5);
+            bsdf_near(r.f[0] * scale, e.f[0], 1e-6);
+            bsdf_near(r.pdf, e.pdf_reverse, 1e-6);
         }
         free(memory);
     }
@@ -317,7 +319,7 @@ static void compensated_sampler_has_its_pdf(void **state) {
 /* Off, a surface is what it was: no byte more, and the same answers; a walk's pdf and value never leave the range. */
 static void off_is_off(void **state) {
     (void)state;
-    assert_int_equal(sizeof(mu_closure_f), 128);
+    assert_int_equal(sizeof(mu_closure_f), 104); /* what shading copied before there was any of this */
     const mu_definition off = definition_of(1, 1, MU_SINGLE), walks = definition_of(1, 1, MU_RANDOM_WALK);
     assert_true(mu_surface_bytes_f(&off) < mu_surface_bytes_f(&walks));
     mu_definition d = definition_of(1, 1, MU_COMPENSATED);
@@ -357,12 +359,16 @@ static void refuses_what_it_cannot_do(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(walk_keeps_all_light),      cmocka_unit_test(compensation_returns_what_is_lost),
-        cmocka_unit_test(table_knows_a_closed_form), cmocka_unit_test(glass_keeps_all_light),
-        cmocka_unit_test(evaluation_agrees_with_sampling), cmocka_unit_test(walk_is_reciprocal),
-        cmocka_unit_test(walk_knows_the_map_alone),  cmocka_unit_test(compensation_is_pointwise),
-        cmocka_unit_test(compensated_sampler_has_its_pdf), cmocka_unit_test(off_is_off),
-        cmocka_unit_test(refuses_what_it_cannot_do)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(walk_keeps_all_light),
+                                       cmocka_unit_test(compensation_returns_what_is_lost),
+                                       cmocka_unit_test(table_knows_a_closed_form),
+                                       cmocka_unit_test(glass_keeps_all_light),
+                                       cmocka_unit_test(evaluation_agrees_with_sampling),
+                                       cmocka_unit_test(walk_is_reciprocal),
+                                       cmocka_unit_test(walk_knows_the_map_alone),
+                                       cmocka_unit_test(compensation_is_pointwise),
+                                       cmocka_unit_test(compensated_sampler_has_its_pdf),
+                                       cmocka_unit_test(off_is_off),
+                                       cmocka_unit_test(refuses_what_it_cannot_do)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

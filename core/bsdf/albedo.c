@@ -10,7 +10,7 @@
 /* Places per side and cell at which the lobe is integrated, and walks that tell where light leaves. */
 enum { WITHIN = 4, WALKS = 2048 };
 static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
-static const float least = 1e-7f; /* what is lost at least: the lobe exists everywhere */
+static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
 void mu_albedo_direction(const mu_albedo *t, float a, float b, float w[3]) {
     const float half = (float)ALBEDO_CELLS / 2, x = a / half - 1, y = b / half - 1;
@@ -35,9 +35,10 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *s, float u0, float
             low = middle + 1;
         }
     }
-    const float before = low ? s->cumulative[low - 1] : 0, within = (u0 - before) / (s->cumulative[low] - before);
-    mu_albedo_direction(t, (float)(low / ALBEDO_CELLS) + fminf(within, 1),
-                        (float)(low % ALBEDO_CELLS) + u1, w);
+    const float before = low ? s->cumulative[low - 1] : 0,
+                within = (u0 - before) / (s->cumulative[low] - before);
+    mu_albedo_direction(t, (float)(low / ALBEDO_CELLS) + fminf(within, 1), (float)(low % ALBEDO_CELLS) + u1,
+                        w);
 }
 
 /* L from V = s M^-1, s the slope unit: what is rougher than 1 along an axis is bounded. */
@@ -147,15 +148,15 @@ void mu_albedo_make(const mu_definition *d, mu_albedo *t, void *scratch) {
     for (int i = 0; i < sides; i++) {
         fill_lost(s, core, t, i ? -1.0f : 1.0f, &t->side[i]);
         fill_lobe(t, &t->side[i]);
-        t->side[i].stays = 1;
+        t->side[i].passes = 0;
     }
     if (!d->transmission) return;
-    /* (1 - stays) average is the same from both sides but for eta², or the surface were not reciprocal */
+    /* passes average is the same from both sides but for eta², or the surface were not reciprocal */
     const double eta2 = d->dielectric * d->dielectric, above = (double)t->side[0].average,
                  below = (double)t->side[1].average * eta2;
     const double passes = fmin((1 - share_above(s)) * above, fmin(above, below));
-    t->side[0].stays = (float)(1 - passes / above);
-    t->side[1].stays = (float)(1 - passes / below);
+    t->side[0].passes = (float)(passes / above);
+    t->side[1].passes = (float)(passes / below);
 }
 
 #endif

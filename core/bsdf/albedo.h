@@ -27,8 +27,8 @@ enum { ALBEDO_CELLS = 36, ALBEDO_NODES = ALBEDO_CELLS + 1 };
 typedef struct mu_albedo_side {
     float lost[ALBEDO_NODES * ALBEDO_NODES];       /* 1 - E, above 0 */
     float cumulative[ALBEDO_CELLS * ALBEDO_CELLS]; /* of the lobe (1 - E) cos, by cells */
-    float average;                                 /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
-    float stays; /* of light that is scattered on: the share that leaves on this side */
+    float average; /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
+    float passes;  /* of light that is scattered on: the share that leaves on the other side */
 } mu_albedo_side;
 
 typedef struct mu_albedo {
@@ -64,7 +64,8 @@ static inline float albedo_lost(const mu_albedo_side *s, albedo_place at) {
     const int j = albedo_cell(at.a), k = albedo_cell(at.b);
     const float *row = &s->lost[j * ALBEDO_NODES + k], x = at.a - (float)j, y = at.b - (float)k;
     const float v00 = row[0], v01 = row[1], v10 = row[ALBEDO_NODES], v11 = row[ALBEDO_NODES + 1];
-    if (j == k) return x > y ? v00 + x * (v10 - v00) + y * (v11 - v10) : v00 + y * (v01 - v00) + x * (v11 - v01);
+    if (j == k)
+        return x > y ? v00 + x * (v10 - v00) + y * (v11 - v10) : v00 + y * (v01 - v00) + x * (v11 - v01);
     if (j + k == ALBEDO_CELLS - 1)
         return x + y < 1 ? v00 + x * (v10 - v00) + y * (v01 - v00)
                          : v11 + (1 - x) * (v01 - v11) + (1 - y) * (v10 - v11);

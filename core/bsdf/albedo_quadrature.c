@@ -56,7 +56,8 @@ static double integrand(const ray *l, double r) {
     double passed = 0;
     if (l->transmission) {
         F = MU(fresnel_dielectric)(c->eta, fminf((float)facing, 1));
-        if (F < 1 && refracted(c, unit, facing, i)) passed += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
+        if (F < 1 && refracted(c, unit, facing, i))
+            passed += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
     }
     for (int k = 0; k < 3; k++) i[k] = (float)(2 * facing * unit[k] - (double)c->wo[k]);
     if (i[2] > 0) passed += (double)(F * c->kernel->shadowing(c, i, 0));
@@ -136,7 +137,8 @@ float MU(albedo_integral)(const surface *s, double core, const float wo[3]) {
     const int quarters = s->transmission || unlike > 2 || t[0] != 0 || t[1] != 0 ? 8 : 4;
     double sum = 0;
     for (int j = 0; j < 8 * quarters; j++) {
-        const double phi = facing + 2 * PI * ((node[j % 8] + j / 8) / quarters - 0.25), u[2] = {cos(phi), sin(phi)};
+        const double phi = facing + 2 * PI * ((node[j % 8] + j / 8) / quarters - 0.25),
+                     u[2] = {cos(phi), sin(phi)};
         l.along[0] = v[0] * u[0] + v[2] * u[1], l.along[1] = v[1] * u[0] + v[3] * u[1];
         sum += weight[j % 8] * azimuth(&l, core);
     }

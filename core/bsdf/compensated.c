@@ -5,10 +5,10 @@
  * and Kulla & Conty 2017, for any distribution under any constant map, with tilt, on both sides of what transmits.
  *
  * With lost(w) = 1 - E(w) as albedo.h interpolates it, and A its cosine-weighted average over the side that wi is on,
- *     f_ms = stays lost(wo) lost(wi) / (pi A) F_ms        reflected
- *     f_ms = (1 - stays) lost(wo) lost(wi) / (pi A)       transmitted, importance; over eta², eta = n_i/n_o, radiance
+ *     f_ms = (1 - passes) lost(wo) lost(wi) / (pi A) F_ms        reflected
+ *     f_ms = passes lost(wo) lost(wi) / (pi A)       transmitted, importance; over eta², eta = n_i/n_o, radiance
  * which is reciprocal and returns all that single scattering loses when F_ms = 1. F_ms = F²E / (1 - F (1 - E)) of averages
- * over the hemisphere: light that met two facets or more (Kulla & Conty 2017; F² by Hill 2018). `stays` is shared out as
+ * over the hemisphere: light that met two facets or more (Kulla & Conty 2017; F² by Hill 2018). `passes` is as
  * walks on this very surface end (albedo.c).
  *
  * Sampled by one of both lobes, as likely as each sends light on; pdf is that of the mixture. Where the surface is bound
@@ -43,14 +43,15 @@ static lobe lobe_toward(const closure *c, const multiple *m, const real i[3], in
                 i_f[3] = {(float)i[0], (float)i[1], (float)i[2]};
     const albedo_place at_o = albedo_locate(t, o_f), at_i = albedo_locate(t, i_f);
     const real lost_o = R(albedo_lost(from, at_o)), lost_i = R(albedo_lost(to, at_i));
-    const real share = R(transmitted ? 1 - from->stays : from->stays),
-               share_back = R(transmitted ? 1 - to->stays : to->stays);
+    const real share = R(transmitted ? from->passes : 1 - from->passes),
+               share_back = R(transmitted ? to->passes : 1 - to->passes);
     const real transmits = R(c->surface->transmission);
     lobe l = {.chosen = transmits > 0 ? lost_o : chance(m, lost_o),
               .back = transmits > 0 ? lost_i : chance(m, lost_i),
               .pdf = share * R(albedo_density(to, at_i)),
               .reverse = share_back * R(albedo_density(from, at_o))};
-    for (int k = 0; k < 3; k++) l.f[k] = share * lost_o * (lost_i / R(to->average)) * R(INV_PI) * m->repeated[k];
+    for (int k = 0; k < 3; k++)
+        l.f[k] = share * lost_o * (lost_i / R(to->average)) * R(INV_PI) * m->repeated[k];
     return l;
 }
 
@@ -84,10 +85,11 @@ void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3]
 static void sample_lobe(const kernel *full, const closure *c, const real u[3], sample *out) {
     const multiple *m = multiple_of(c->surface);
     const mu_albedo_side *from = &m->albedo->side[below(c)];
-    const int transmitted = !(u[2] < R(from->stays));
+    const int transmitted = u[2] < R(from->passes);
     float w[3];
     mu_albedo_draw(m->albedo, &m->albedo->side[below(c) ^ transmitted], (float)u[0], (float)u[1], w);
-    const real turn = transmitted ? -c->side : c->side;
+    const real unit = 1 / sqrt(square(R(w[0])) + square(R(w[1])) + square(R(w[2])));
+    const real turn = transmitted ? -c->side * unit : c->side * unit;
     for (int k = 0; k < 3; k++) out->wi[k] = turn * R(w[k]), out->wm[k] = k < 2 ? 0 : c->side;
     value v;
     MU(compensated_eval)(full, c, out->wi, &v);
@@ -112,7 +114,8 @@ void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sam
         sample_lobe(full, c, moved, out);
         return;
     }
-    moved[2] = smaller((u[2] - chosen) / (1 - chosen), 1 - R(0.5) * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON));
+    moved[2] = smaller((u[2] - chosen) / (1 - chosen),
+                       1 - R(0.5) * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON));
     full->sample(c, sampler, moved, out);
     if (out->rejected) return;
     if (out->delta) {

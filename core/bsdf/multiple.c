@@ -10,7 +10,8 @@ static size_t padded(size_t bytes) {
 size_t MU(multiple_bytes)(const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return 0;
     const size_t head = padded(sizeof(multiple));
-    return d->multiple == MU_RANDOM_WALK ? head : head + padded(albedo_bytes(d)) + padded(mu_albedo_scratch(d));
+    return d->multiple == MU_RANDOM_WALK ? head
+                                         : head + padded(albedo_bytes(d)) + padded(mu_albedo_scratch(d));
 }
 
 /* 2 F(mu) mu dmu by the midpoint rule: 1e-4 and better, kinks at the critical angle included. */

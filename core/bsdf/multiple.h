@@ -14,9 +14,10 @@
 
 typedef struct MU(mu_multiple) {
     const mu_albedo *albedo; /* of the compensated form */
-    real average[3];         /* F averaged over the hemisphere, 2 F(mu) mu dmu; of a surface that transmits: [0] from above,
+    real average
+        [3]; /* F averaged over the hemisphere, 2 F(mu) mu dmu; of a surface that transmits: [0] from above,
                                 [1] from below */
-    real repeated[3];        /* what F leaves of light that was reflected twice or more */
+    real repeated[3]; /* what F leaves of light that was reflected twice or more */
     uint32_t salt;
 } multiple;
 
@@ -49,8 +50,8 @@ typedef struct MU(mu_walk_end) {
 void MU(walk_trace)(const kernel *full, const closure *c, const multiple *with, const real u[3],
                     walk_end *out);
 /* f toward wi of the light that meets `first` to `last` facets: an unbiased estimate from one walk. */
-void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3], int first,
-                       int last, real f[3]);
+void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3],
+                       int first, int last, real f[3]);
 void MU(walk_eval)(const kernel *full, const closure *c, const real wi[3], value *out);
 void MU(walk_sample)(const kernel *full, const closure *c, mu_sampler sampler, const real u[3], sample *out);
 

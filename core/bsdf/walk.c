@@ -24,7 +24,7 @@ typedef struct walk {
     const closure *c;
     const multiple *with;
     real cliff[2], steepness; /* T, |T| */
-    real w[3]; /* of the ray, turned over with the side */
+    real w[3];                /* of the ray, turned over with the side */
     real depth;
     int side; /* 0: that of wo */
     real weight[3];
@@ -169,7 +169,8 @@ static void toward(const walk *p, const real from[3], real seen, const real i[3]
 }
 
 /* The same of the cliffs. */
-static void add_cliffs(const walk *p, const real from[3], real seen, const real i[3], int refracted, real f[3]) {
+static void add_cliffs(const walk *p, const real from[3], real seen, const real i[3], int refracted,
+                       real f[3]) {
     const real there = cliffs_seen(p, from);
     if (!(there > 0)) return;
     const real d = there / seen * R(INV_PI) * cliffs_seen(p, i) / p->steepness;
@@ -181,8 +182,8 @@ static random_stream random_of(const closure *c, const multiple *with, const rea
     return (random_stream){random_mix(o + 0x9e3779b97f4a7c15u * with->salt + (c->side < 0)) ^ i};
 }
 
-void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3], int first,
-                       int last, real f[3]) {
+void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3],
+                       int first, int last, real f[3]) {
     walk p = walk_start(full, c, with, random_of(c, with, wi));
     const int target = c->side * wi[2] < 0;
     const real turn = target ? -c->side : c->side, i[3] = {turn * wi[0], turn * wi[1], turn * wi[2]},

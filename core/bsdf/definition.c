@@ -102,6 +102,8 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
         right = "is none of single, compensated and random walk";
     } else if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
         right = "a random walk needs height-correlated masking: that is the walk's own";
+    } else if (d->multiple == MU_RANDOM_WALK && (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN)) {
+        right = "a random walk knows no flakes: compensated does";
     } else if (d->multiple == MU_RANDOM_WALK && d->sampler != MU_SAMPLE_VISIBLE) {
         right = "a random walk needs the visible sampler: it meets visible normals";
     } else if (d->multiple == MU_COMPENSATED && d->ndf == MU_CUSTOM && !d->custom_f) {

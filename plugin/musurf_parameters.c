@@ -17,6 +17,7 @@ static const char *const masking_choices[] = {"separable", "height_correlated", 
 static const char *const fresnel_choices[] = {"none", "schlick", "dielectric", "conductor", NULL};
 static const char *const conductor_choices[] = {"Ag", "Al", "Au", "Cr", "Cu", "custom", NULL};
 static const char *const sampler_choices[] = {"visible", "ndf", "mixed", "visible_uniform", "auto", NULL};
+static const char *const multiple_choices[] = {"none", "compensated", "random_walk", NULL};
 
 #define HEAD(id, name, label)    sizeof(musurf_param), id, name, label
 #define NUMBERS                  NULL, NULL
@@ -360,4 +361,9 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      1,
      {0},
      NUMBERS},
+    {HEAD(36, "multiple_scattering", "Multiple scattering"),
+     "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, from tables "
+     "made at compile time; transform must be constant), or random_walk (followed on the microsurface: the reference, "
+     "but noisy).",
+     CHOICE("none", multiple_choices)},
 };

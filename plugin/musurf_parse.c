@@ -87,6 +87,7 @@ static musurf_result judge(const given *g, const mu_definition *d) {
                       {"flake_density", FLAKE_DENSITY},
                       {"flake_cone", FLAKE_CONE},
                       {"transmission", TRANSMISSION},
+                      {"multiple", MULTIPLE_SCATTERING},
                       {"schlick", SCHLICK},
                       {"dielectric", DIELECTRIC},
                       {"n", N},
@@ -119,5 +120,9 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     d->sampler = out->sampler_auto ? MU_SAMPLE_VISIBLE : (mu_sampler)sampler;
     d->masking = (mu_masking_form)musurf_choice(&g, MASKING);
     d->transmission = musurf_number(&g, TRANSMISSION) != 0;
+    d->multiple = (mu_scattering)musurf_choice(&g, MULTIPLE_SCATTERING);
+    if (d->multiple == MU_COMPENSATED && out->varying)
+        return musurf_fail(host, MUSURF_UNSUPPORTED, MULTIPLE_SCATTERING,
+                           "compensated needs a constant transform: its tables are of one; random_walk takes any");
     return judge(&g, d);
 }

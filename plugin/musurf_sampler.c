@@ -40,6 +40,7 @@ mu_sampler musurf_choose_sampler(const mu_definition *definition, void *memory) 
     d.sampler = MU_SAMPLE_VISIBLE_UNIFORM;
     mu_complaint why;
     if (!mu_definition_check(&d, &why)) return MU_SAMPLE_VISIBLE; /* what mixes knows reflection alone */
+    d.multiple = MU_SINGLE; /* what is added is smooth whichever draws */
     const mu_surface_d *both = mu_surface_make_d(&d, memory);
     return noise_of(both, MU_SAMPLE_VISIBLE_UNIFORM) < noise_of(both, MU_SAMPLE_VISIBLE)
                ? MU_SAMPLE_VISIBLE_UNIFORM

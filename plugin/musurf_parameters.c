@@ -16,6 +16,7 @@ static const char *const anisotropy_choices[] = {"none", "disney",     "cycles",
 static const char *const masking_choices[] = {"separable", "height_correlated", "direction_correlated", NULL};
 static const char *const fresnel_choices[] = {"none", "schlick", "dielectric", "conductor", NULL};
 static const char *const conductor_choices[] = {"Ag", "Al", "Au", "Cr", "Cu", "custom", NULL};
+static const char *const smith_choices[] = {"exact", "spline", NULL};
 static const char *const sampler_choices[] = {"visible", "ndf", "mixed", "visible_uniform", "auto", NULL};
 static const char *const multiple_choices[] = {"none", "compensated", "random_walk", NULL};
 
@@ -362,8 +363,14 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      {0},
      NUMBERS},
     {HEAD(36, "multiple_scattering", "Multiple scattering"),
-     "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, from tables "
-     "made at compile time; transform must be constant), or random_walk (followed on the microsurface: the reference, "
+     "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, "
+     "from tables "
+     "made at compile time; transform must be constant), or random_walk (followed on the microsurface: the "
+     "reference, "
      "but noisy).",
      CHOICE("none", multiple_choices)},
+    {HEAD(37, "smith", "Smith masking"),
+     "Smith's masking of gtr: exact, or spline, the approximation of Appendix A for gamma up to 4, for "
+     "comparison. The spline is sampled by mixed unless sampler says ndf.",
+     CHOICE("exact", smith_choices)},
 };

@@ -86,6 +86,7 @@ static musurf_result judge(const given *g, const mu_definition *d) {
                       {"histogram", HISTOGRAM},
                       {"flake_density", FLAKE_DENSITY},
                       {"flake_cone", FLAKE_CONE},
+                      {"smith", SMITH},
                       {"transmission", TRANSMISSION},
                       {"multiple", MULTIPLE_SCATTERING},
                       {"schlick", SCHLICK},
@@ -118,6 +119,9 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     const int sampler = musurf_choice(&g, SAMPLER_CHOICE);
     out->sampler_auto = sampler == MU_SAMPLER_COUNT;
     d->sampler = out->sampler_auto ? MU_SAMPLE_VISIBLE : (mu_sampler)sampler;
+    d->smith = (mu_smith)musurf_choice(&g, SMITH);
+    if (d->smith == MU_SMITH_SPLINE && (out->sampler_auto || !g.by_id[SAMPLER_CHOICE]))
+        d->sampler = MU_SAMPLE_MIXED, out->sampler_auto = 0; /* the paper's own, Appendix B */
     d->masking = (mu_masking_form)musurf_choice(&g, MASKING);
     d->transmission = musurf_number(&g, TRANSMISSION) != 0;
     d->multiple = (mu_scattering)musurf_choice(&g, MULTIPLE_SCATTERING);

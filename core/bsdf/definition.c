@@ -102,17 +102,34 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
         right = "is none of single, compensated and random walk";
     } else if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
         right = "a random walk needs height-correlated masking: that is the walk's own";
-    } else if (d->multiple == MU_RANDOM_WALK && (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN)) {
+    } else if (d->multiple == MU_RANDOM_WALK &&
+               (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN)) {
         right = "a random walk knows no flakes: compensated does";
     } else if (d->multiple == MU_RANDOM_WALK && d->sampler != MU_SAMPLE_VISIBLE) {
         right = "a random walk needs the visible sampler: it meets visible normals";
     } else if (d->multiple == MU_COMPENSATED && d->ndf == MU_CUSTOM && !d->custom_f) {
         right = "compensated needs custom_f: its tables are made in float";
     } else if (d->multiple == MU_COMPENSATED && tilts_too_much(d)) {
-        right = "compensated needs a tilt of at most 4 alpha, or its tables are too coarse: the random walk takes any";
+        right = "compensated needs a tilt of at most 4 alpha, or its tables are too coarse: the random walk "
+                "takes any";
     }
     snprintf(why->text, sizeof why->text, "%s", right);
     return !right[0];
+}
+
+/* Appendix A is of GTR, between its integers. Its masking does not normalise the visible normals that it would draw. */
+static int check_smith(const mu_definition *d, mu_complaint *why) {
+    if (d->smith != MU_SMITH_SPLINE) return 1;
+    if (d->ndf == MU_GTR && d->gamma > 4)
+        return complain(why, "gamma", d->gamma,
+                        "the spline of Appendix A ends at 4, where smith must be exact");
+    const int samples = d->sampler == MU_SAMPLE_NDF || d->sampler == MU_SAMPLE_MIXED;
+    if (d->ndf == MU_GTR && d->multiple == MU_SINGLE && samples) return 1;
+    return refuse(why, "smith",
+                  d->multiple != MU_SINGLE ? "spline knows single scattering alone"
+                  : d->ndf != MU_GTR
+                      ? "spline approximates gtr alone: the masking of this distribution is exact"
+                      : "spline needs the sampler ndf or mixed: visible normals are those of exact masking");
 }
 
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
@@ -152,7 +169,8 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
                  m[0], m[1], m[2], m[3]);
         return 0;
     }
-    return check_fresnel(d, why) && check_transmission(d, why) && check_multiple(d, why);
+    return check_fresnel(d, why) && check_transmission(d, why) && check_multiple(d, why) &&
+           check_smith(d, why);
 }
 
 #endif

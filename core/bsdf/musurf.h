@@ -58,6 +58,11 @@ typedef enum mu_sampler {
     MU_SAMPLE_VISIBLE_UNIFORM, /* visible normals, and 3 of 10 directions uniform: for long tails seen from above */
     MU_SAMPLER_COUNT
 } mu_sampler;
+typedef enum mu_smith {
+    MU_SMITH_EXACT,
+    MU_SMITH_SPLINE, /* of GTR, gamma in [0, 4]: Appendix A, approximate; for comparison. Needs D cos or mixed sampling */
+    MU_SMITH_COUNT
+} mu_smith;
 typedef enum mu_masking_form {
     MU_SEPARABLE,         /* G1(wo) G1(wi) */
     MU_HEIGHT_CORRELATED, /* 1 / (1 + Lambda_o + Lambda_i) */
@@ -98,6 +103,7 @@ typedef struct mu_definition {
     const double *histogram;
     size_t histogram_columns, histogram_rows; /* 1 ... 1024 */
     double histogram_bounds[4];               /* x_min, x_max, y_min, y_max */
+    mu_smith smith;
     int transmission; /* also refracts: then Fresnel must be dielectric, and the surface has two sides */
     mu_fresnel_kind fresnel;
     /* MU_CUSTOM: what a file written by distribution.h defines, compiled for float and for double; NULL: not in that

@@ -5,7 +5,7 @@
 #include "core/bsdf/tabulated.h"
 
 extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr), MU(mu_kernel_std),
-    MU(mu_kernel_sheen), MU(mu_kernel_tabulated);
+    MU(mu_kernel_sheen), MU(mu_kernel_tabulated), MU(mu_kernel_gtr_spline);
 
 /* One row per mu_ndf; what has none comes down to another, see choose(). */
 static const kernel *const kernels[MU_NDF_COUNT] = {
@@ -44,6 +44,13 @@ static plan choose_tabulated(const mu_definition *d) {
     return p;
 }
 
+/* GTR by Appendix A. */
+static plan spline(const mu_definition *d) {
+    plan p = as(d, MU_GTR, d->alpha, d->gamma, "gtr spline (approximate)");
+    p.kernel = &MU(mu_kernel_gtr_spline);
+    return p;
+}
+
 static plan choose(const mu_definition *d) {
     const kernel *const custom = d->MU(custom);
     if (d->ndf == MU_CUSTOM) return (plan){custom, *d, custom ? custom->name : "none"};
@@ -54,6 +61,7 @@ static plan choose(const mu_definition *d) {
         if (d->gamma == 2 || d->alpha == 1) return as(d, MU_GGX, d->alpha, 2, "ggx (gtr is ggx here)");
         /* D differs from gamma = 0 by less than the last place of a double */
         if (d->gamma * (1 - 2 * log(d->alpha)) < 1e-17) return as(d, MU_GGX, 1, 2, "ggx (gtr is ggx here)");
+        if (d->smith == MU_SMITH_SPLINE) return spline(d);
         return as(d, MU_GTR, d->alpha, d->gamma, MU_REAL_BITS == 24 ? "gtr table" : "gtr quadrature");
     case MU_STD:
         return choose_std(d, d->alpha, d->gamma);
@@ -175,6 +183,10 @@ void MU(mu_footprint)(closure *c, const double footprint[6]) {
     for (int i = 0; footprint && i < 6; i++) c->footprint[i] = footprint[i];
 }
 
+static int is_gtr_kernel(const kernel *k) {
+    return k->plans[PLAN_GENERAL] == kernels[MU_GTR] || k->plans[PLAN_GENERAL] == &MU(mu_kernel_gtr_spline);
+}
+
 void MU(mu_blur)(closure *c, real alpha) {
     if (!(alpha > 0)) return;
     const surface *s = c->surface;
@@ -186,7 +198,7 @@ void MU(mu_blur)(closure *c, real alpha) {
     } else {
         /* gtr of gamma < 1 is measured in slopes of 1, but alpha is what there is of a lobe */
         const kernel *const ggx = kernels[MU_GGX];
-        const int is_gtr = c->kernel->plans[PLAN_GENERAL] == kernels[MU_GTR];
+        const int is_gtr = is_gtr_kernel(c->kernel);
         int same = PLAN_FULL; /* GGX of the same plan; M is no multiple of 1 any more */
         while (same < PLAN_COUNT && c->kernel != c->kernel->plans[same]) same++;
         const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;

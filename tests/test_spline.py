@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""smith "spline": the masking of Appendix A, held to the paper's own Eq. (35) to (39) as printed, in 50 digits, under a
+natural cubic spline solved apart from the C code; exact at the integers; refused where it is not defined.
+
+Tolerance: the absolute values of the spline's weights sum to at most 1.39; each S_k moves by at most the relative change of
+alpha or of the direction's slope, rounded to half a unit each on the way in, and takes about 16 roundings of its own: 1.39
+times 18 units, and 5 for their sum: 30 units of 2^-53 or 2^-24, in G1 of [0, 1].
+"""
+import sys
+import unittest
+
+from mpmath import lu_solve, matrix, mp, mpf, log, sqrt
+
+from command import answers, microfacet, musurf
+
+mp.dps = 50
+ALPHAS, GAMMAS = (1e-6, 0.01, 0.1, 0.3, 0.6, 0.999), (0.05, 0.5, 0.9, 1, 1.0001, 1.6, 2, 2.3, 3, 3.5, 4)
+ANGLES = ((0.01, 1), (0.5, 1), (1, 1), (1, 0.1), (1, 1e-3))  # sine and cosine, up to a factor
+
+
+def visibility(alpha, mu):
+    """S_0 to S_4 as Appendix A prints them."""
+    a2, a4 = alpha**2, alpha**4
+    A1, B1, B3, A4 = sqrt(mu**2 + a2), sqrt(mu**2 + 1), a2 + 1, 8 * a4 + 8 * a2 + 8
+    return [
+        2 / (1 + sqrt(1 / mu**2 + 1)),
+        mu * log(a2) / (A1 - B1 + mu * log(a2 * (mu + B1) / (mu + A1))),
+        2 / (1 + sqrt(a2 / mu**2 + 1)),
+        4 * B3 * mu * A1 / (a2 * (3 * a2 + 1) + 2 * mu * B3 * (mu + A1)),
+        2 * A4 * mu * A1**3 / (A4 * mu * (A1**3 + mu**3) + 3 * a2 * (a2 * (5 * a4 + 2 * a2 + 1) + 4 * mu**2 * (2 * a4 + a2 + 1))),
+    ]
+
+
+def natural_spline(y, x):
+    """Through (k, y[k]), no curvature at the ends."""
+    bend = [mpf(0), *lu_solve(matrix([[4, 1, 0], [1, 4, 1], [0, 1, 4]]), matrix([6 * (y[k - 1] - 2 * y[k] + y[k + 1]) for k in (1, 2, 3)])), mpf(0)]
+    k = min(int(x), 3)
+    t = x - k
+    return (1 - t) * y[k] + t * y[k + 1] + ((1 - t) ** 3 - (1 - t)) / 6 * bend[k] + (t**3 - t) / 6 * bend[k + 1]
+
+
+def spline(**parameters):
+    return microfacet(ndf="gtr", smith="spline", **parameters)
+
+
+class Spline(unittest.TestCase):
+    def worst(self, precision):
+        """Largest error of G1; and how many of its values lay outside [S_0, 1] before it was clamped."""
+        cases = [(alpha, gamma, angle) for alpha in ALPHAS for gamma in GAMMAS for angle in ANGLES]
+        done = musurf("eval", "--precision", precision, stdin=[
+            {"material": spline(alpha=alpha, gamma=gamma), "wo": [angle[0], 0, angle[1]], "wm": [0, 0, 1]} for alpha, gamma, angle in cases])
+        self.assertEqual(done.returncode, 0, done.out)
+        largest, clamped = 0, 0
+        for (alpha, gamma, (sine, cosine)), out in zip(cases, answers(done), strict=True):
+            s = visibility(mpf(alpha), mpf(cosine) / mpf(sine))
+            free = natural_spline(s, mpf(gamma))
+            right = min(mpf(1), max(s[0], free))
+            clamped += free != right
+            largest = max(largest, abs(out["G1"] - right))
+        return largest, clamped
+
+    def test_is_what_appendix_a_says(self):
+        for precision, bound in (("double", 30 * 2.0**-53), ("float", 30 * 2.0**-24)):
+            largest, clamped = self.worst(precision)
+            self.assertLess(largest, bound, precision)
+            self.assertGreater(clamped, 10)  # the clamp is tested too
+            self.assertLess(clamped, 150)
+
+    def test_is_exact_at_integers_only(self):
+        for gamma, apart in ((0.5, 1e-4), (1, 0), (1.5, 1e-4), (3, 0), (3.5, 1e-4)):
+            lines = [{"material": microfacet(ndf="gtr", smith=smith, alpha=0.3, gamma=gamma), "wo": [1, 0, 0.2], "wm": [0, 0, 1]} for smith in ("exact", "spline")]
+            exact, approximate = (answer["G1"] for answer in answers(musurf("eval", stdin=lines)))
+            difference = abs(exact - approximate)
+            self.assertTrue(difference > apart if apart else difference < 5e-15, (gamma, difference))
+
+    def test_refusals(self):
+        for parameters, words in ((dict(ndf="gtr", gamma=4.1), "ends at 4"), (dict(ndf="ggx"), "gtr alone"),
+                                  (dict(ndf="gtr", gamma=1, sampler="visible"), "ndf or mixed")):
+            done = musurf("eval", stdin=[{"material": microfacet(smith="spline", **parameters), "wo": [0, 0, 1]}])
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(words, done.out)
+
+    def test_the_sampler_is_the_papers_own(self):
+        """Unless it says ndf. `pdf` tells them apart."""
+        line = {"wo": [0.6, 0, 0.8], "wi": [-0.5, 0.3, 0.6]}
+        pdf = {sampler: answers(musurf("eval", stdin=[dict(line, material=spline(alpha=0.3, gamma=1.5, **({"sampler": sampler} if sampler else {})))]))[0]["pdf"]
+               for sampler in (None, "auto", "mixed", "ndf")}
+        self.assertEqual(pdf[None], pdf["mixed"])
+        self.assertEqual(pdf["auto"], pdf["mixed"])
+        self.assertNotEqual(pdf["ndf"], pdf["mixed"])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

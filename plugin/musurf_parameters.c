@@ -17,7 +17,8 @@ static const char *const masking_choices[] = {"separable", "height_correlated", 
 static const char *const fresnel_choices[] = {"none", "schlick", "dielectric", "conductor", NULL};
 static const char *const conductor_choices[] = {"Ag", "Al", "Au", "Cr", "Cu", "custom", NULL};
 static const char *const smith_choices[] = {"exact", "spline", NULL};
-static const char *const sampler_choices[] = {"visible", "ndf", "mixed", "visible_uniform", "auto", NULL};
+static const char *const sampler_choices[] = {"visible", "ndf",  "mixed", "visible_uniform",
+                                              "bounded", "auto", NULL};
 static const char *const multiple_choices[] = {"none", "compensated", "random_walk", NULL};
 
 #define HEAD(id, name, label)    sizeof(musurf_param), id, name, label
@@ -148,7 +149,9 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "uniform "
      "directions with probability alpha (Appendix B), for comparison; visible normals with 3 of 10 "
      "directions uniform, "
-     "for very long tails; auto measures which of visible and visible_uniform has the lower variance.",
+     "for very long tails; bounded, of ggx without tilt: visible normals but most that reflect below the "
+     "horizon; auto "
+     "measures which of visible, visible_uniform and bounded has the lowest variance.",
      CHOICE("visible", sampler_choices)},
     {HEAD(14, "exponent", "Exponent"),
      "Exponent n of phong: D = (n + 2) cos^n / 2 pi. The other distributions have none.",

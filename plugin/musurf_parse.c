@@ -87,6 +87,7 @@ static musurf_result judge(const given *g, const mu_definition *d) {
                       {"flake_density", FLAKE_DENSITY},
                       {"flake_cone", FLAKE_CONE},
                       {"smith", SMITH},
+                      {"sampler", SAMPLER_CHOICE},
                       {"transmission", TRANSMISSION},
                       {"multiple", MULTIPLE_SCATTERING},
                       {"schlick", SCHLICK},

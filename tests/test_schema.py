@@ -18,7 +18,7 @@ BEYOND_A_SCHEMA = ("not both", "needs both n and k", "is singular", "is defined 
                    "x_min, x_max, y_min, y_max: the second", "cannot be read as an OpenEXR image", "at least 1e-30 wide",
                    "is no whole number", "belongs to discrete_ggx", "compensated needs", "a random walk",
                    "spline approximates", "the spline of Appendix A",
-                   "spline needs", "spline knows")
+                   "spline needs", "spline knows", "bounded is known", "bounded needs")
 
 
 def valid(schema, value):

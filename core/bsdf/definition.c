@@ -132,6 +132,16 @@ static int check_smith(const mu_definition *d, mu_complaint *why) {
                       : "spline needs the sampler ndf or mixed: visible normals are those of exact masking");
 }
 
+static int check_sampler(const mu_definition *d, mu_complaint *why) {
+    if (d->sampler != MU_SAMPLE_BOUNDED) return 1;
+    why->field = "sampler";
+    snprintf(why->text, sizeof why->text, "%s",
+             d->ndf != MU_GGX                     ? "bounded is known of ggx alone"
+             : d->tilt[0] != 0 || d->tilt[1] != 0 ? "bounded needs a microsurface without tilt"
+                                                  : "");
+    return !why->text[0];
+}
+
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
     if (d->ndf == MU_TABULATED && !check_histogram(d, why)) return 0;
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
@@ -170,7 +180,7 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         return 0;
     }
     return check_fresnel(d, why) && check_transmission(d, why) && check_multiple(d, why) &&
-           check_smith(d, why);
+           check_smith(d, why) && check_sampler(d, why);
 }
 
 #endif

@@ -37,8 +37,9 @@
 enum { MU_SHAPE = 20, FROM_BELOW = 65536 };
 
 enum {
-    PICKS = 1,      /* sample_visible uses u[2] */
-    ANISOTROPIC = 2 /* turning the microsurface changes it */
+    PICKS = 1,       /* sample_visible uses u[2] */
+    ANISOTROPIC = 2, /* turning the microsurface changes it */
+    IS_UNIT_GGX = 4  /* may be sampled within a bound, bounded.h */
 };
 
 /* A prepared distribution. What `shape` holds is each one's own business. */

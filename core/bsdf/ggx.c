@@ -40,7 +40,7 @@ static double prepare(base *b, const mu_definition *d, void *table) {
     return d->alpha;
 }
 
-enum { TRAITS = 0 };
+enum { TRAITS = IS_UNIT_GGX };
 
 #define DISTRIBUTION ggx
 #include "core/bsdf/transformed.h"

@@ -14,17 +14,25 @@ static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
     return h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
 }
 
+/* Does it draw some directions uniformly? */
+static inline int mixes(mu_sampler sampler) {
+    return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
+}
+
 /* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand. */
 static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
-                                  real over_cos_oh, real sigma_i, real choice, real *pdf, real *reverse) {
+                                  real over_cos_oh, const real i[3], real sigma_i, real choice, real *pdf,
+                                  real *reverse) {
     const real scale = c->map.view_z;
     if (MUTANT(5, 1, sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)) {
         *pdf = *reverse = smaller(quarter_d * smaller(over_cos_oh, saturated) * choice, saturated);
     } else {
-        *pdf = smaller(quarter_d * (scale / larger(c->sigma, REAL_MIN)) * choice, saturated);
-        *reverse = smaller(quarter_d * (scale / larger(sigma_i, REAL_MIN)) * choice, saturated);
+        const real shown_o = c->sigma - bounded_less(plan, c, sampler, c->wo),
+                   shown_i = sigma_i - bounded_less(plan, c, sampler, i);
+        *pdf = smaller(quarter_d * (scale / larger(shown_o, REAL_MIN)) * choice, saturated);
+        *reverse = smaller(quarter_d * (scale / larger(shown_i, REAL_MIN)) * choice, saturated);
     }
-    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) { /* Appendix B: the balance heuristic */
+    if (plan == PLAN_FULL && mixes(sampler)) { /* Appendix B: the balance heuristic */
         const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
         *pdf = (1 - share) * *pdf + uniform;
         *reverse = (1 - share) * *reverse + uniform;
@@ -54,6 +62,6 @@ HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, c
     fresnel_of(c, sqrt(sum2) / 2, F); /* wo.wm = |h| / 2 */
     for (int k = 0; k < 3; k++) out->f[k] = F[k] * f;
     const real choice = plan == PLAN_FULL && c->surface->transmission ? MUTANT(13, 1, F[0]) : 1;
-    reflection_pdf(plan, c, sampler, quarter_d, h[2] / (sqrt(h2) * sqrt(sum2) / 2), sigma_i, choice,
+    reflection_pdf(plan, c, sampler, quarter_d, h[2] / (sqrt(h2) * sqrt(sum2) / 2), i, sigma_i, choice,
                    &out->pdf, &out->pdf_reverse);
 }

@@ -5,15 +5,18 @@
  * transformed.h).
  */
 
-/* A micronormal, seen from `from` if `visible`: n in the distribution's own space; m in the surface's, of unit length. D_M comes from n itself, not from
+/* A micronormal, seen from `from` by samplers of visible normals: n in the distribution's own space; m in the surface's, of unit length. D_M comes from n itself, not from
  * M^T m: exact however near to singular M is. 0 if there is none. */
-static inline int draw_normal(plan_kind plan, const closure *c, const real from[3], int visible,
+static inline int draw_normal(plan_kind plan, const closure *c, const real from[3], mu_sampler sampler,
                               const real u[3], real m[3], real *d) {
     real n[3];
-    if (visible) {
+    if (sampler != MU_SAMPLE_NDF && sampler != MU_SAMPLE_MIXED) {
         real w[3];
         map_view(plan, &c->map, from, w);
-        sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
+        if (TRAITS & IS_UNIT_GGX && sampler == MU_SAMPLE_BOUNDED)
+            cap_visible_bounded(w, 1 - bound_of(plan, &c->map, from), u[0], u[1], n);
+        else
+            sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
     } else {
         sample_slope(&c->surface->base, u, n); /* Eq. (25) */
     }
@@ -37,14 +40,15 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     real sigma_i, lambda_i;
     view_of(plan, c, i, &sigma_i, &lambda_i);
     const real scale = c->map.view_z, open = larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN);
-    const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, c->sigma), 1);
+    const real shown = c->sigma - bounded_less(plan, c, sampler, c->wo);
+    const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, shown), 1);
     real f = smaller(d / 4 * smaller(scale / open, saturated), saturated);
     const real choice = plan == PLAN_FULL && c->surface->transmission ? F[0] : 1;
-    reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, sigma_i, choice, &out->pdf, &out->pdf_reverse);
+    reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, i, sigma_i, choice, &out->pdf, &out->pdf_reverse);
     real weight = ratio; /* F G2 / G1 */
     if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
         weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
-    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) { /* its own density over that of the mixture */
+    if (plan == PLAN_FULL && mixes(sampler)) { /* its own density over that of the mixture */
         const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
         weight *= larger(out->pdf - uniform, 0) / larger(out->pdf, REAL_MIN) / (1 - share);
     }
@@ -78,7 +82,7 @@ static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sample
                              sample *out) {
     *out = (sample){.rejected = 1, .eta = 1};
     real moved[3] = {u[0], u[1], u[2]}, m[3], d;
-    if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) {
+    if (plan == PLAN_FULL && mixes(sampler)) {
         const real share = c->surface->uniform_share;
         if (u[2] < share) {
             uniform_sample(c, sampler, u, out);
@@ -86,8 +90,7 @@ static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sample
         }
         moved[2] = (u[2] - share) / (1 - share);
     }
-    const int visible = sampler == MU_SAMPLE_VISIBLE || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
-    if (!draw_normal(plan, c, c->wo, visible, moved, m, &d)) return;
+    if (!draw_normal(plan, c, c->wo, sampler, moved, m, &d)) return;
     for (int k = 0; k < 3; k++) out->wm[k] = plan == PLAN_FULL ? c->side * m[k] : m[k];
     const real cosine = m[0] * c->wo[0] + m[1] * c->wo[1] + m[2] * c->wo[2];
     if (!(cosine > 0)) return;

@@ -58,6 +58,7 @@ static inline void fresnel_of(const closure *c, real cosine, real F[3]) {
     if (c->surface->fresnel.kind) MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(cosine, 1), F);
 }
 
+#include "core/bsdf/bounded.h"
 #include "core/bsdf/reflection.h"
 #include "core/bsdf/refraction.h"
 #include "core/bsdf/sampling.h"
@@ -104,7 +105,7 @@ FOR_PLANS(full, PLAN_FULL)
 
 static int normal_full(const closure *c, const real from[3], const real u[3], real m[3]) {
     real d;
-    return draw_normal(PLAN_FULL, c, from, 1, u, m, &d);
+    return draw_normal(PLAN_FULL, c, from, MU_SAMPLE_VISIBLE, u, m, &d);
 }
 
 static const kernel uniform, full, compensated, walk;

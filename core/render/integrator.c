@@ -14,5 +14,7 @@ size_t mu_integrator_scratch(const mu_scene *scene) {
 
 void mu_integrator_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
                        uint32_t sample, void *scratch, mu_radiance *out) {
-    mu_path_row(tracer, &(mu_path_options){0}, seed, x, y, count, sample, scratch, out);
+    const mu_path_options options = {.strategy =
+                                         tracer->scene->integrator.bsdf_only ? MU_BSDF_ONLY : MU_BOTH};
+    mu_path_row(tracer, &options, seed, x, y, count, sample, scratch, out);
 }

@@ -12,7 +12,7 @@
 #include "core/render/integrator.h"
 #include "core/render/random.h"
 
-typedef struct mu_path_options { /* all zero: what mu_integrator_row does */
+typedef struct mu_path_options { /* all zero: what mu_integrator_row does by default */
     enum { MU_BOTH, MU_BSDF_ONLY, MU_LIGHT_ONLY } strategy;
     _Bool independent; /* random numbers without stratification */
 } mu_path_options;

@@ -39,6 +39,8 @@ typedef struct mu_integrator_settings {
     uint32_t depth;    /* longest path: number of scattering events; 1 = direct light only */
     uint32_t roulette; /* Russian roulette from this many events on */
     uint32_t samples;  /* per pixel, unless the command line says otherwise */
+    _Bool
+        bsdf_only; /* light is found by following the BSDF alone, but for lights that are points or directions */
     uint64_t seed;
 } mu_integrator_settings;
 

@@ -85,8 +85,11 @@ _Bool mu_read_integrator(mu_reader *reader) {
         !mu_read_count(&place, "depth", 1, 4096, &integrator->depth, error) ||
         !mu_read_count(&place, "roulette", 1, 4096, &integrator->roulette, error))
         return 0;
-    const mu_place seed = mu_place_member(&place, "seed");
+    const mu_place seed = mu_place_member(&place, "seed"), lights = mu_place_member(&place, "light_sampling");
+    _Bool sampled = 1;
     long long value;
+    if (lights.value && !mu_place_flag(&lights, &sampled, error)) return 0;
+    integrator->bsdf_only = !sampled;
     if (!seed.value) return 1;
     if (!mu_place_integer(&seed, 0, 1ll << 53, &value, error)) return 0;
     integrator->seed = (uint64_t)value;

@@ -11,20 +11,16 @@
  * singular values of (slope unit) M^-T, since turning either space about its normal changes nothing in the bound. The
  * density is that of visible normals with sigma - (1 - k) w.z / 2 in place of sigma.
  */
+#include "core/bsdf/cap.h"
 
 /* 1 - k, for v above the horizon. */
-static inline real bound_of(plan_kind plan, const map *m, const real v[3]) {
-    const real *t = m->view, det = square(square(m->normal_z)); /* of unit M^-T = view^T / view_z */
-    const real plus = square(t[0] + t[3]) + square(t[1] - t[2]),
-               minus = square(t[0] - t[3]) + square(t[1] + t[2]);
-    const real a =
-        plan == PLAN_UNIFORM ? fabs(t[0]) / m->view_z : 2 * det * m->view_z / (sqrt(plus) + sqrt(minus));
-    const real a2 = square(smaller(a, 1)), s2 = square(1 + sqrt(v[0] * v[0] + v[1] * v[1])), z2 = v[2] * v[2];
-    return a2 * (z2 + s2) / (s2 + a2 * z2);
+static inline real bound_of(const closure *c, const real v[3]) {
+    const real z2 = v[2] * v[2], s2 = square(1 + sqrt(v[0] * v[0] + v[1] * v[1]));
+    return c->least2 * (z2 + s2) / (s2 + c->least2 * z2);
 }
 
 /* view_z times what the cap above -k w.z shows of sigma less than the one above -w.z. */
-static inline real bounded_less(plan_kind plan, const closure *c, mu_sampler sampler, const real v[3]) {
+static inline real bounded_less(const closure *c, mu_sampler sampler, const real v[3]) {
     if (!(TRAITS & IS_UNIT_GGX) || sampler != MU_SAMPLE_BOUNDED) return 0;
-    return bound_of(plan, &c->map, v) * (c->map.view_z * v[2]) / 2;
+    return bound_of(c, v) * (c->map.view_z * v[2]) / 2;
 }

@@ -32,6 +32,15 @@ int MU(map_widen)(map *m, double base, double alpha);
  * 0; root[1] root[2]] in slope units: a Gaussian's alpha² is twice its variance. To be widened: its normals are not set. */
 void MU(map_stand_for)(map *m, const double root[3]);
 
+/* The smaller singular value of (slope unit) M^-T = view^T / view_z: the least slope roughness, in slopes, of what is 1 in
+ * slope units. Sums of squares in place of the difference that would cancel. */
+static inline real map_least(const map *m) {
+    const real *t = m->view, det = square(square(m->normal_z));
+    const real plus = square(t[0] + t[3]) + square(t[1] - t[2]),
+               minus = square(t[0] - t[3]) + square(t[1] + t[2]);
+    return 2 * det * m->view_z / (sqrt(plus) + sqrt(minus));
+}
+
 /* What a kernel was compiled for. */
 typedef enum plan_kind {
     PLAN_GENERAL, /* any M */

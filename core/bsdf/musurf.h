@@ -72,7 +72,7 @@ typedef enum mu_masking_form {
 } mu_masking_form;
 /* What becomes of light that meets the microsurface more than once. */
 typedef enum mu_scattering {
-    MU_SINGLE,      /* it is lost: rough surfaces are too dark */
+    MU_SINGLE, /* it is lost: rough surfaces are too dark */
     MU_COMPENSATED, /* a smooth lobe adds what is missing, from tables of the very surface; M must be the definition's:
                        bound with an M of the point, the surface scatters singly */
     MU_RANDOM_WALK, /* light is followed on the Smith microsurface: exact, but f is an unbiased estimate, noisy */

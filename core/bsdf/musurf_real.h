@@ -23,8 +23,9 @@ typedef struct MU_SUFFIX(mu_closure) {
     MU_REAL wo[3];         /* turned over if it came from below: all is as seen from wo.z > 0 */
     MU_REAL sigma, lambda; /* view_z times the projected area sigma_M(wo), and times cos Lambda */
     MU_REAL alpha;
-    MU_REAL side; /* +1, or -1: wo was below, and all directions in and out are turned over */
-    MU_REAL eta;  /* of a dielectric: n_transmitted / n_incident, seen from wo */
+    MU_REAL least2; /* of bounded sampling: the square of the smaller slope roughness, at most 1; else 0 */
+    MU_REAL side;   /* +1, or -1: wo was below, and all directions in and out are turned over */
+    MU_REAL eta;    /* of a dielectric: n_transmitted / n_incident, seen from wo */
     int importance; /* set it after mu_bind: importance is transported, not radiance. Matters to refraction only */
     int has_footprint; /* set by mu_footprint; what follows is only touched if the surface is a discrete one */
     double footprint[6];

@@ -27,8 +27,8 @@ static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
     if (MUTANT(5, 1, sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)) {
         *pdf = *reverse = smaller(quarter_d * smaller(over_cos_oh, saturated) * choice, saturated);
     } else {
-        const real shown_o = c->sigma - bounded_less(plan, c, sampler, c->wo),
-                   shown_i = sigma_i - bounded_less(plan, c, sampler, i);
+        const real shown_o = c->sigma - bounded_less(c, sampler, c->wo),
+                   shown_i = sigma_i - bounded_less(c, sampler, i);
         *pdf = smaller(quarter_d * (scale / larger(shown_o, REAL_MIN)) * choice, saturated);
         *reverse = smaller(quarter_d * (scale / larger(shown_i, REAL_MIN)) * choice, saturated);
     }
@@ -54,7 +54,8 @@ HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, c
     real sigma_i, lambda_i;
     view_of(plan, c, i, &sigma_i, &lambda_i);
     const real scale = c->map.view_z;
-    real f = smaller(quarter_d * smaller(scale / larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN),
+    real f =
+        smaller(quarter_d * smaller(scale / larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN),
                                     saturated),
                 saturated);
     if (plan == PLAN_FULL) f = smaller(f * glint(plan, c, h, h2), saturated);

@@ -14,7 +14,7 @@ static inline int draw_normal(plan_kind plan, const closure *c, const real from[
         real w[3];
         map_view(plan, &c->map, from, w);
         if (TRAITS & IS_UNIT_GGX && sampler == MU_SAMPLE_BOUNDED)
-            cap_visible_bounded(w, 1 - bound_of(plan, &c->map, from), u[0], u[1], n);
+            cap_visible_bounded(w, 1 - bound_of(c, from), u[0], u[1], n);
         else
             sample_visible(&c->surface->base, w, u, n); /* Eq. (28) */
     } else {
@@ -40,7 +40,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     real sigma_i, lambda_i;
     view_of(plan, c, i, &sigma_i, &lambda_i);
     const real scale = c->map.view_z, open = larger(unshadowed(plan, c, i, sigma_i, lambda_i, 0), REAL_MIN);
-    const real shown = c->sigma - bounded_less(plan, c, sampler, c->wo);
+    const real shown = c->sigma - bounded_less(c, sampler, c->wo);
     const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, shown), 1);
     real f = smaller(d / 4 * smaller(scale / open, saturated), saturated);
     const real choice = plan == PLAN_FULL && c->surface->transmission ? F[0] : 1;

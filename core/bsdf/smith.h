@@ -15,9 +15,11 @@
 /* Q(x): the part of the projected area whose squared slope exceeds x. */
 typedef double (*mu_survival)(const void *shape, double x);
 
-/* z Lambda at slope tan = r/z, to about `digits` decimal digits (9 or 16); smith.c. Q must be negligible nowhere below
- * x = e^(2 end) alone. */
+/* z Lambda at slope tan = r/z, to about `digits` decimal digits (3 to 32; shading takes 9 and 16); smith.c. Q must be
+ * negligible nowhere below x = e^(2 end) alone. */
 double mu_smith_z_lambda(mu_survival Q, const void *shape, double end, double r, double z, int digits);
+/* The trapezoid rule's step for so many digits. */
+double mu_smith_step(int digits);
 
 /* The table: a smooth function phi of v = tan²(theta/2) in [0, 1], in slope units of the material (v = 1: the horizon),
  * by polynomials over half octaves of v, and one more piece from 0 to 2^-octaves; smith_table.c. */

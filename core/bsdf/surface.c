@@ -173,7 +173,8 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->side = s->transmission && wo[2] < 0 ? R(-1) : R(1);
     c->eta = c->side < 0 ? 1 / s->fresnel.a[0] : s->fresnel.a[0]; /* of a dielectric */
     for (int i = 0; i < 3; i++) c->wo[i] = c->side * wo[i];
-    c->sigma = c->lambda = 0;
+    c->sigma = c->lambda = c->least2 = 0;
+    if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     if (c->kernel && c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
     return c->wo[2] > 0;
 }
@@ -214,6 +215,7 @@ void MU(mu_blur)(closure *c, real alpha) {
     }
     c->alpha = larger(c->alpha, alpha);
     c->has_footprint = 0;
+    if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
 }
 

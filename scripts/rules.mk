@@ -3,6 +3,22 @@
 run-demo: all
 	@BUILD=$(BUILD) $(PYTHON) scripts/demo
 
+# What masking and samplers are worth: Figures 9 and 10 measured.
+efficiency: deps
+	@$(MAKE) --no-print-directory run-efficiency
+run-efficiency: all $(BENCHMARKS)
+	@BUILD=$(BUILD) $(PYTHON) scripts/efficiency -o $(BUILD)/efficiency $(if $(QUICK),--quick)
+
+# The long report: error against run time as curves, the study above, and what `make demo` left, if it ran. QUICK=1: small.
+report: deps
+	@$(MAKE) --no-print-directory run-report
+run-report: run-efficiency
+	@BUILD=$(BUILD) $(PYTHON) scripts/curves -o $(BUILD)/curves
+	@BUILD=$(BUILD) $(PYTHON) scripts/report --curves $(BUILD)/curves --efficiency $(BUILD)/efficiency \
+	    $(if $(wildcard $(BUILD)/plates/plates.json),--plates $(BUILD)/plates) \
+	    $(if $(wildcard $(BUILD)/validate/fragment.html),--validate $(BUILD)/validate) \
+	    --json $(BUILD)/report/report.json -o $(BUILD)/report/report.html
+
 # The README's accuracy, speed and stability tables, measured again.
 tables: deps
 	@$(MAKE) --no-print-directory run-tables

@@ -78,6 +78,32 @@ class Report(unittest.TestCase):
                      "POV-Ray 3.7"):
             self.assertIn(fact, page.text)
 
+    def test_curves_and_data(self):
+        curves, study, data = self.path / "curves", self.path / "efficiency", self.path / "out" / "report.json"
+        curves.mkdir(), study.mkdir()
+        points = [{"x": 10 ** k, "y": 10.0 ** -k, "label": f"h {k}"} for k in range(4)]
+        for name in ("2-b", "1-a"):  # any file of this form is shown, in the order of names
+            (curves / f"{name}.json").write_text(json.dumps({
+                "title": f"Table <{name}>", "text": "why", "command": "bench & more", "x": {"label": "seconds", "log": True},
+                "y": {"label": "error", "log": True}, "series": [{"name": "rule", "line": True, "points": points}]}))
+        (study / "efficiency.json").write_text('{"goal": 0.75}')
+        (study / "fragment.html").write_text("<h2>Study</h2>")
+        done = self.run_report("--plates", str(self.path), "--curves", str(curves), "--efficiency", str(study), "--json", str(data))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page, told = Page(self.output.read_text()), json.loads(data.read_text())
+        self.assertEqual((page.open, page.fetched, page.pictures), ([], [], 3))
+        for fact in ("Table &lt;1-a&gt;", "bench &amp; more", "<td>h 3</td><td>1000</td><td>0.001</td>", "<h2>Study</h2>"):
+            self.assertIn(fact, page.text)
+        self.assertLess(page.text.index("Table &lt;1-a&gt;"), page.text.index("Table &lt;2-b&gt;"))
+        self.assertEqual([c["title"] for c in told["curves"]], ["Table <1-a>", "Table <2-b>"])
+        self.assertEqual(told["efficiency"]["goal"], 0.75)
+        self.assertEqual(told["plates"][0]["header"]["samples"], 77)
+        self.assertIn("machine", told["versions"])
+        (curves / "3-c.json").write_text('{"title": "no points"}')
+        done = self.run_report("--curves", str(curves))
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "^report: [^\n]*not what it should be[^\n]*\n$")
+
     def test_broken_inputs_leave_the_old_page(self):
         self.output.parent.mkdir()
         self.output.write_text("old")

@@ -5,11 +5,12 @@ import argparse
 import datetime
 import html
 import json
+import math
 import os
 import pathlib
 import sys
 
-from . import exr_header, plates, versions
+from . import curves, exr_header, plates, versions
 
 
 def page(sections, subtitle):
@@ -27,21 +28,44 @@ def write(path, text):
     fresh.replace(path)
 
 
+def strict(value):
+    """Numbers that JSON does not have become null."""
+    if isinstance(value, dict):
+        return {key: strict(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [strict(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def make(options, build):
-    sections, links, validation = [], [], {}
+    """(the page, the same as data)"""
+    sections, links, validation, data = [], [], {}, {}
     if options.plates:
-        sections.append(plates.section(plates.load(pathlib.Path(options.plates))))
+        loaded = plates.load(pathlib.Path(options.plates))
+        data["plates"] = [{key: value for key, value in plate.items() if key != "data"} for plate in loaded]
+        sections.append(plates.section(loaded))
         links.append('<a href="#plates">Plates</a>')
     if options.validate:
         folder = pathlib.Path(options.validate)
         validation = json.loads((folder / "validate.json").read_text())
         sections.append(f'<section id="validate">{(folder / "fragment.html").read_text()}</section>')
         links.append('<a href="#validate">Cross-check</a>')
-    sections.append(versions.section(versions.gather(build, validation)))
+        data["validate"] = validation
+    if options.curves:
+        data["curves"] = curves.load(pathlib.Path(options.curves))
+        sections.append(curves.section(data["curves"]))
+        links.append('<a href="#curves">Error against run time</a>')
+    if options.efficiency:
+        folder = pathlib.Path(options.efficiency)
+        data["efficiency"] = json.loads((folder / "efficiency.json").read_text())
+        sections.append(f'<section id="efficiency">{(folder / "fragment.html").read_text()}</section>')
+        links.append('<a href="#efficiency">Masking and sampling</a>')
+    data["versions"] = dict(versions.gather(build, validation))
+    sections.append(versions.section(data["versions"].items()))
     links.append('<a href="#versions">Versions</a>')
     verdict = f" Cross-check: {validation['verdict']}." if validation else ""
     subtitle = f"Made {datetime.datetime.now().astimezone():%Y-%m-%d %H:%M %Z}.{verdict}"
-    return page([f"<nav>{''.join(links)}</nav>", *sections], subtitle)
+    return page([f"<nav>{''.join(links)}</nav>", *sections], subtitle), data
 
 
 def main(arguments, build):
@@ -49,11 +73,16 @@ def main(arguments, build):
                                      "Exit 0; 1 if an input is missing or broken; 2 on wrong usage.")
     parser.add_argument("--plates", metavar="DIR", help="rendered plates: PNG files, beside them EXR files and plates.json")
     parser.add_argument("--validate", metavar="DIR", help="output folder of scripts/validate")
+    parser.add_argument("--curves", metavar="DIR", help="output folder of scripts/curves")
+    parser.add_argument("--efficiency", metavar="DIR", help="output folder of scripts/efficiency")
+    parser.add_argument("--json", metavar="FILE", help="the same as data")
     parser.add_argument("-o", metavar="FILE", dest="output", default=os.path.join(str(build), "report", "index.html"))
     options = parser.parse_args(arguments)
     try:
-        text = make(options, build)
+        text, data = make(options, build)
         write(pathlib.Path(options.output), text)
+        if options.json:
+            write(pathlib.Path(options.json), json.dumps(strict(data), indent=1, ensure_ascii=False, allow_nan=False))
     except OSError as error:
         print(f"report: {error.filename}: {error.strerror}", file=sys.stderr)
         return 1

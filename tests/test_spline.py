@@ -8,12 +8,14 @@ Tolerance: the absolute values of the spline's weights sum to at most 1.39; each
 alpha or of the direction's slope, rounded to half a unit each on the way in, and takes about 16 roundings of its own: 1.39
 times 18 units, and 5 for their sum: 30 units of 2^-53 or 2^-24, in G1 of [0, 1].
 """
+import json
 import sys
+import tempfile
 import unittest
 
 from mpmath import lu_solve, matrix, mp, mpf, log, sqrt
 
-from command import answers, microfacet, musurf
+from command import answers, microfacet, musurf, strict
 
 mp.dps = 50
 ALPHAS, GAMMAS = (1e-6, 0.01, 0.1, 0.3, 0.6, 0.999), (0.05, 0.5, 0.9, 1, 1.0001, 1.6, 2, 2.3, 3, 3.5, 4)
@@ -81,6 +83,25 @@ class Spline(unittest.TestCase):
             done = musurf("eval", stdin=[{"material": microfacet(smith="spline", **parameters), "wo": [0, 0, 1]}])
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.out)
+
+    def check(self, material):
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            file.write(json.dumps({"objects": [{"shape": "sphere", "material": material}]}))
+            file.flush()
+            return musurf("check", "--json", "--n", 0, file.name)
+
+    def test_check_tells_it_from_exact_masking(self):
+        """Eq. (2) is what the paper says the spline closely meets."""
+        done = self.check(spline(alpha=0.01, gamma=1.5, sampler="ndf"))
+        self.assertEqual(done.returncode, 1, done.err)
+        failed = {law["law"] for law in strict(done.out)["laws"] if law["verdict"] == "FAILED"}
+        self.assertEqual(failed, {"MASKING", "PROJECTED_AREA", "VISIBLE_NORMALS", "VISIBLE_SAMPLER"})
+        self.assertEqual(self.check(spline(alpha=0.01, gamma=3, sampler="ndf")).returncode, 0)
+
+    def test_check_passes_over_mixtures(self):
+        """However seldom they draw a uniform direction."""
+        done = self.check(spline(alpha=0.01, gamma=1.5))
+        self.assertIn("neither by visible normals nor by D cos", done.err)
 
     def test_the_sampler_is_the_papers_own(self):
         """Unless it says ndf. `pdf` tells them apart."""

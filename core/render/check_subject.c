@@ -104,6 +104,7 @@ _Bool mu_subject_find_sampler(mu_subject *subject) {
     for (int n = 0; n < 32; n++) {
         double u[3];
         for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
+        if (n == 0) u[2] = 0; /* what a mixture spends on uniform directions, however small its share */
         musurf_probe_sample s[3];
         memset(s, 0, sizeof s);
         for (int kind = 0; kind < 3; kind++)

@@ -36,8 +36,8 @@ static mu_generator *make(mu_slope_law law) {
 }
 
 /* Seconds for both families of facets; rays and points seen are counted. */
-static double look(const mu_tracer *tracer, void *surface, const mu_heightfield *f, const double w[3], double *rays,
-                   double *seen) {
+static double look(const mu_tracer *tracer, void *surface, const mu_heightfield *f, const double w[3],
+                   double *rays, double *seen) {
     static uint8_t row[N];
     mu_error error = {.text = ""};
     double used = 0;
@@ -84,9 +84,9 @@ int main(void) {
             double used[2], rays, seen[2];
             for (int t = 0; t < 2; t++) used[t] = look(tracers[t], surfaces[t], &f, w, &rays, &seen[t]);
             const _Bool good = used[0] < 2 && rays / used[0] > 3 * 7.9e5;
-            printf("%-15s  %5.0f   %6.3f  %6.2f      %6.3f  %6.2f       %.0f%s\n", mu_slope_names()[laws[k].kind],
-                   degrees[v], used[0], 1e-6 * rays / used[0], used[1], 1e-6 * rays / used[1], fabs(seen[0] - seen[1]),
-                   good ? "" : "   MISSED");
+            printf("%-15s  %5.0f   %6.3f  %6.2f      %6.3f  %6.2f       %.0f%s\n",
+                   mu_slope_names()[laws[k].kind], degrees[v], used[0], 1e-6 * rays / used[0], used[1],
+                   1e-6 * rays / used[1], fabs(seen[0] - seen[1]), good ? "" : "   MISSED");
             missed += !good;
         }
         for (int t = 0; t < 2; t++) tracers[t]->close(surfaces[t]);

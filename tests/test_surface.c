@@ -56,7 +56,8 @@ static void shares_integrate_the_density(void **state) {
         assert_null(mu_slope_trouble(&laws[k]));
         for (double u = 0.02; u < 0.99; u += 0.0473) {
             const double r = mu_slope_quantile(&laws[k], u), step = 1e-4 * r;
-            const double slope = (mu_slope_share(&laws[k], r + step) - mu_slope_share(&laws[k], r - step)) / (2 * step);
+            const double slope =
+                (mu_slope_share(&laws[k], r + step) - mu_slope_share(&laws[k], r - step)) / (2 * step);
             const double wanted = 2 * pi * r * density(&laws[k], r) / pow(1 + r * r, 2);
             assert_true(fabs(slope / wanted - 1) < 1e-6);
         }
@@ -118,7 +119,8 @@ static void pyramid_bounds(void **state) {
                 for (int64_t j = j0; j <= j1; j++)
                     most = fmax(most, h[((i % n + n) % n) * n + (j % n + n) % n]);
             assert_true(mu_pyramid_most(&p, i0, i1, j0, j1) >= most);
-            if (i1 - i0 < 3 && j1 - j0 < 3) assert_true(mu_pyramid_most(&p, i0, i1, j0, j1) == most); /* single vertices */
+            if (i1 - i0 < 3 && j1 - j0 < 3)
+                assert_true(mu_pyramid_most(&p, i0, i1, j0, j1) == most); /* single vertices */
         }
         mu_pyramid_free(&p);
         free(h);
@@ -161,7 +163,8 @@ static _Bool meets(const double o[3], const double d[3], const double p[3][3]) {
 static _Bool sees(const mu_heightfield *f, const mu_sight *s, uint32_t i, uint32_t j, int64_t around) {
     static const int corner[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {0, 1}, {1, 0}}};
     double p[3][3], o[3], normal[3], a[3], b[3];
-    for (int k = 0; k < 3; k++) baked(f, s->m, (int64_t)i + corner[s->upper][k][0], (int64_t)j + corner[s->upper][k][1], p[k]);
+    for (int k = 0; k < 3; k++)
+        baked(f, s->m, (int64_t)i + corner[s->upper][k][0], (int64_t)j + corner[s->upper][k][1], p[k]);
     const double wb = s->upper ? 1 - s->u : s->u, wc = s->upper ? 1 - s->v : s->v;
     for (int k = 0; k < 3; k++) {
         a[k] = p[1][k] - p[0][k], b[k] = p[2][k] - p[0][k];
@@ -174,14 +177,15 @@ static _Bool sees(const mu_heightfield *f, const mu_sight *s, uint32_t i, uint32
         for (int64_t y = -around * n; y < (around + 1) * n; y++)
             for (int upper = 0; upper < 2; upper++) {
                 if (x == i && y == j && upper == s->upper) continue;
-                for (int k = 0; k < 3; k++) baked(f, s->m, x + corner[upper][k][0], y + corner[upper][k][1], p[k]);
+                for (int k = 0; k < 3; k++)
+                    baked(f, s->m, x + corner[upper][k][0], y + corner[upper][k][1], p[k]);
                 if (meets(o, s->w, (const double(*)[3])p)) return 0;
             }
     return 1;
 }
 
-static const double maps[][4] = {{1, 0, 0, 1}, {5, 0, 0, 1}, {1, 2, 0, 1}, {0.8, 0.5, 0.3, -1.2}, {0.6, -0.8, 0.8, 0.6},
-                                 {6.1, 7.9, 0.05, 0.08}};
+static const double maps[][4] = {{1, 0, 0, 1},          {5, 0, 0, 1},          {1, 2, 0, 1},
+                                 {0.8, 0.5, 0.3, -1.2}, {0.6, -0.8, 0.8, 0.6}, {6.1, 7.9, 0.05, 0.08}};
 enum { MAPS = sizeof maps / sizeof maps[0] };
 
 /* Bit for bit: a ray that passes an edge so closely that rounding decides does not happen among these. */
@@ -198,7 +202,8 @@ static void caster_equals_brute_force(void **state) {
             const double *m = maps[map];
             mu_sight s = {.m = {m[0], m[1], m[2], m[3]}, .upper = (int)(k % 2)};
             /* Original views of tan theta up to 3, carried by M: heights of +-3 reach over 18 cells, two periods. */
-            const double turn = 2 * pi * mu_noise_uniform(8, 3 * k), tangent = 3 * mu_noise_uniform(8, 3 * k + 1);
+            const double turn = 2 * pi * mu_noise_uniform(8, 3 * k),
+                         tangent = 3 * mu_noise_uniform(8, 3 * k + 1);
             const double x = tangent * cos(turn), y = tangent * sin(turn);
             s.w[0] = m[0] * x + m[1] * y, s.w[1] = m[2] * x + m[3] * y, s.w[2] = 1;
             s.u = s.upper ? 0.75 : 0.25, s.v = 0.5;
@@ -291,7 +296,8 @@ static void horizon_and_zenith(void **state) {
     uint8_t row[8];
     assert_int_equal(mu_cast_make(&cast, caster, &s), MU_WALK_OK);
     mu_cast_row(cast, 3, row);
-    for (int j = 0; j < 8; j++) assert_int_equal(row[j], 1); /* from straight above all of a heightfield is seen */
+    for (int j = 0; j < 8; j++)
+        assert_int_equal(row[j], 1); /* from straight above all of a heightfield is seen */
     mu_cast_free(cast);
     s.w[0] = 1, s.w[2] = 1e-9;
     assert_int_equal(mu_cast_make(&cast, caster, &s), MU_WALK_TOO_LONG);
@@ -304,10 +310,14 @@ static void horizon_and_zenith(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares_integrate_the_density), cmocka_unit_test(quantiles_invert_shares),
-        cmocka_unit_test(ranks),                        cmocka_unit_test(pyramid_bounds),
-        cmocka_unit_test(caster_equals_brute_force),    cmocka_unit_test(single_rays_equal_rows),
-        cmocka_unit_test(periodic),                     cmocka_unit_test(horizon_and_zenith),
+        cmocka_unit_test(shares_integrate_the_density),
+        cmocka_unit_test(quantiles_invert_shares),
+        cmocka_unit_test(ranks),
+        cmocka_unit_test(pyramid_bounds),
+        cmocka_unit_test(caster_equals_brute_force),
+        cmocka_unit_test(single_rays_equal_rows),
+        cmocka_unit_test(periodic),
+        cmocka_unit_test(horizon_and_zenith),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,9 +92,10 @@ static void slopes_follow_the_law(void **state) {
                     steepest = fmax(steepest, sqrt(r2));
                     c2 += (s[0] * s[0] - s[1] * s[1]) / r2, s2 += 2 * s[0] * s[1] / r2;
                 }
-        for (int upper = 0; upper < 2; upper++) assert_true(mu_slope_deviation(&f, upper, &laws[k], 20) < 0.01);
+        for (int upper = 0; upper < 2; upper++)
+            assert_true(mu_slope_deviation(&f, upper, &laws[k], 20) < 0.01);
         assert_true(steepest <= limit);
-        assert_true(steepest > 0.9 * limit); /* and the tail is there */
+        assert_true(steepest > 0.9 * limit);                    /* and the tail is there */
         assert_true(hypot(c2, s2) / (2.0 * f.n * f.n) < 0.002); /* no preferred axis */
         mu_generator_free(g);
     }
@@ -110,7 +111,8 @@ static void densities_normalise(void **state) {
     const mu_directions d = {180, 8, pi / 2};
     const size_t bins = mu_directions_count(&d);
     double *out = malloc((bins + 1) * sizeof *out), sphere = 0, cosines = 0;
-    for (size_t k = 0; k < bins; k++) sphere += mu_directions_solid_angle(&d, k), cosines += mu_directions_projected(&d, k);
+    for (size_t k = 0; k < bins; k++)
+        sphere += mu_directions_solid_angle(&d, k), cosines += mu_directions_projected(&d, k);
     assert_true(fabs(sphere / (2 * pi) - 1) < 1e-12 && fabs(cosines / pi - 1) < 1e-12);
     for (int map = 0; map < 3; map++) {
         double sum = 0;
@@ -150,13 +152,17 @@ static bounce bounce_off(const mu_heightfield *f, const double m[4], const doubl
     double *share[2] = {calloc(cells, sizeof(double)), calloc(cells, sizeof(double))};
     mu_caster *caster = mu_caster_make(f);
     for (int upper = 0; upper < 2; upper++) {
-        const mu_sight s = {
-            .m = {m[0], m[1], m[2], m[3]}, .w = {w[0], w[1], w[2]}, .u = upper ? 0.75 : 0.25, .v = 0.5, .upper = upper};
+        const mu_sight s = {.m = {m[0], m[1], m[2], m[3]},
+                            .w = {w[0], w[1], w[2]},
+                            .u = upper ? 0.75 : 0.25,
+                            .v = 0.5,
+                            .upper = upper};
         mu_cast *cast;
         assert_int_equal(mu_cast_make(&cast, caster, &s), MU_WALK_OK);
         for (uint32_t i = 0; i < f->n; i++) {
             mu_cast_row(cast, i, seen + (size_t)i * f->n);
-            mu_reflect_row(caster, f, m, w, upper, i, seen + (size_t)i * f->n, both[upper] + (size_t)i * f->n);
+            mu_reflect_row(caster, f, m, w, upper, i, seen + (size_t)i * f->n,
+                           both[upper] + (size_t)i * f->n);
         }
         for (size_t k = 0; k < cells; k++) share[upper][k] = seen[k];
         mu_cast_free(cast);

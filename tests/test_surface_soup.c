@@ -20,12 +20,14 @@
 
 #define CLOSE(a, b) assert_true(fabs((a) - (b)) < 1e-9)
 
-static double share(const mu_soup *soup, size_t first, size_t count, const double (*w)[3], size_t directions) {
+static double share(const mu_soup *soup, size_t first, size_t count, const double (*w)[3],
+                    size_t directions) {
     double seen = 0, all = 0;
     for (size_t k = first; k < first + count; k++) {
         double n[3];
         mu_soup_normal(soup, k, n);
-        const double area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), part = mu_soup_visible(soup, k, w, directions);
+        const double area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]),
+                     part = mu_soup_visible(soup, k, w, directions);
         assert_true(part >= 0 && part < 1 + 1e-12);
         seen += area * part;
         all += area;
@@ -163,16 +165,16 @@ static void loose_facets(void **state) {
     CLOSE(mu_soup_visible(&soup, 0, above, 1), 0);
     CLOSE(mu_soup_visible(&soup, 0, one, 1), 1);
     CLOSE(mu_soup_visible(&soup, 0, half, 1), 0.75);
-    const double pair[2][3] = {{0.5, 0, 1}, {-0.5, 0, 1}}; /* the two shadows are small triangles that meet in a point */
+    const double pair[2][3] = {{0.5, 0, 1},
+                               {-0.5, 0, 1}}; /* the two shadows are small triangles that meet in a point */
     CLOSE(mu_soup_visible(&soup, 0, pair, 2), 0.5);
     CLOSE(mu_soup_visible(&soup, 1, pair, 2), 1);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(square_wave),           cmocka_unit_test(azimuth),
-        cmocka_unit_test(overhang),              cmocka_unit_test(boxes_cover_the_plane),
-        cmocka_unit_test(invariant),             cmocka_unit_test(loose_facets),
+        cmocka_unit_test(square_wave),           cmocka_unit_test(azimuth),   cmocka_unit_test(overhang),
+        cmocka_unit_test(boxes_cover_the_plane), cmocka_unit_test(invariant), cmocka_unit_test(loose_facets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,12 +15,15 @@
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
     "surface", "make|measure ...",
-    "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n", no_options,
+    "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
+    no_options,
     "  make      a heightfield with the slopes of a distribution; see musurf surface make --help\n"
     "  measure   facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
     "\n"
-    "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j in it is\n"
-    "y. Each cell splits along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = (i+1,j+1),(i,j+1),(i+1,j).\n"};
+    "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j "
+    "in it is\n"
+    "y. Each cell splits along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = "
+    "(i+1,j+1),(i,j+1),(i+1,j).\n"};
 
 size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, double *out) {
     const char *at = options->value;
@@ -41,8 +44,8 @@ size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, 
         mu_refuse(options->usage, "--%s is \"%s\"; %zu numbers with commas between are needed", options->name,
                   options->value, least);
     else
-        mu_refuse(options->usage, "--%s is \"%s\"; %zu to %zu numbers with commas between are needed", options->name,
-                  options->value, least, most);
+        mu_refuse(options->usage, "--%s is \"%s\"; %zu to %zu numbers with commas between are needed",
+                  options->name, options->value, least, most);
     return 0;
 }
 

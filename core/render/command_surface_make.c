@@ -31,11 +31,14 @@ static const mu_option options[] = {
 
 static const mu_usage usage = {
     "surface make", "--ndf NAME [--alpha A] [--gamma G] [--size N] [--seed S] ... -o FILE",
-    "Makes a periodic heightfield whose facets follow a slope distribution. The same seed makes the same surface.\n",
+    "Makes a periodic heightfield whose facets follow a slope distribution. The same seed makes the same "
+    "surface.\n",
     options,
-    "A Gaussian field is fitted to the distribution by passes that give the k-th flattest facet of each family the\n"
+    "A Gaussian field is fitted to the distribution by passes that give the k-th flattest facet of each "
+    "family the\n"
     "k-th quantile and project these slopes back to heights. One line of JSON tells how well that went:\n"
-    "  \"deviation\"  relative rms deviation of the masses of 20 bins of equal mass, of the facets L and of U\n"
+    "  \"deviation\"  relative rms deviation of the masses of 20 bins of equal mass, of the facets L and of "
+    "U\n"
     "  \"steepest\"   the steepest slope; \"limit\" is the quantile --clip\n"
     "  \"range\"      highest less lowest height, in cells\n"};
 
@@ -74,7 +77,8 @@ static _Bool read_option(mu_making *making, const mu_options *at, int met) {
         return mu_options_unsigned(at, 0, UINT64_MAX, &r->seed);
     case CORRELATION:
         if (!read_number(at, &r->correlation)) return 0;
-        return r->correlation > 0 || (mu_refuse(&usage, "--correlation is %g; it must be above 0", r->correlation), 0);
+        return r->correlation > 0 ||
+               (mu_refuse(&usage, "--correlation is %g; it must be above 0", r->correlation), 0);
     case CLIP:
         if (!read_number(at, &r->clip)) return 0;
         return (r->clip > 0 && r->clip < 1) ||
@@ -95,7 +99,8 @@ static _Bool check(const mu_making *making) {
     if (!making->given[NDF]) return mu_refuse(&usage, "--ndf is needed"), 0;
     if (!making->file) return mu_refuse(&usage, "-o FILE is needed"), 0;
     const char *const name = mu_slope_names()[law->kind];
-    const _Bool wanted[] = {law->kind != MU_SLOPE_PHONG, law->kind == MU_SLOPE_GTR || law->kind == MU_SLOPE_STD,
+    const _Bool wanted[] = {law->kind != MU_SLOPE_PHONG,
+                            law->kind == MU_SLOPE_GTR || law->kind == MU_SLOPE_STD,
                             law->kind == MU_SLOPE_PHONG};
     for (int k = 0; k < 3; k++) {
         if (wanted[k] && !making->given[ALPHA + k])
@@ -106,8 +111,10 @@ static _Bool check(const mu_making *making) {
     const char *const trouble = mu_slope_trouble(law);
     if (trouble) return mu_refuse(&usage, "%s: %s", name, trouble), 0;
     if (making->recipe.correlation > making->recipe.n / 4.0)
-        return mu_refuse(&usage, "--correlation is %g; at most a quarter of the size %u leaves room for a distribution",
-                         making->recipe.correlation, making->recipe.n),
+        return mu_refuse(
+                   &usage,
+                   "--correlation is %g; at most a quarter of the size %u leaves room for a distribution",
+                   making->recipe.correlation, making->recipe.n),
                0;
     return 1;
 }
@@ -120,7 +127,8 @@ static void show(_Bool terminal, uint32_t pass, uint32_t passes) {
 static _Bool fit(const mu_making *making, mu_generator *g, const mu_spectral *fft, uint32_t *done) {
     const _Bool terminal = isatty(STDERR_FILENO);
     if (!mu_generator_start(g, fft)) return 0;
-    for (*done = 0; *done < making->passes || (mu_generator_steepest(g) > 1 && *done < 2 * making->passes); ++*done) {
+    for (*done = 0; *done < making->passes || (mu_generator_steepest(g) > 1 && *done < 2 * making->passes);
+         ++*done) {
         show(terminal, *done, making->passes > *done ? making->passes : 2 * making->passes);
         if (!mu_generator_pass(g, fft)) return 0;
     }
@@ -158,7 +166,8 @@ static int make(const mu_making *making, const char *command) {
     } else {
         const mu_heightfield f = mu_generator_surface(g);
         for (int k = 0; k < 2; k++) info.deviation[k] = mu_slope_deviation(&f, k, &making->recipe.law, 20);
-        info.steepest = mu_generator_steepest(g) * mu_slope_quantile(&making->recipe.law, making->recipe.clip);
+        info.steepest =
+            mu_generator_steepest(g) * mu_slope_quantile(&making->recipe.law, making->recipe.clip);
         if (mu_surface_write(making->file, &f, &info, &error)) {
             report(making, &info, &f);
             code = MU_EXIT_OK;

@@ -18,7 +18,8 @@ enum { TRANSFORM, VIEW, BINS, TRACER, THREADS, SUBSAMPLES };
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "M = [a c; b d], row by row (default: 1,0,0,1)"},
     {"view", "X,Y,Z", "a direction in the space of the transformed surface, Z > 0; up to 64 of them"},
-    {"bins", "N|A,B,...", "G1 by the facets' slope along the view: N bins of as many facets each, or these edges"},
+    {"bins", "N|A,B,...",
+     "G1 by the facets' slope along the view: N bins of as many facets each, or these edges"},
     {"tracer", "own|embree", "own: exact, double precision (default); embree: float"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     {"subsamples", "K", "points per facet for G1_projected and bins: a square, 9 to 225 (default: 9)"},
@@ -26,7 +27,8 @@ static const mu_option options[] = {
 
 static const mu_usage usage = {
     "surface measure", "FILE --view X,Y,Z [--view X,Y,Z ...] [--transform A,C,B,D] ...",
-    "Counts the facets of a heightfield that directions see, on triangles whose vertices M has moved.\n", options,
+    "Counts the facets of a heightfield that directions see, on triangles whose vertices M has moved.\n",
+    options,
     "FILE is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j in it is y.\n"
     "out, one line of JSON: {\"views\": [...], \"pairs\": [...]}; each view has\n"
     "  \"view\"           the direction, as a unit vector\n"
@@ -34,12 +36,15 @@ static const mu_usage usage = {
     "  \"front_facing\"   facets whose normal is within 90 degrees of the view\n"
     "  \"visible\"        of these, whose point (i + 1/4, j + 1/2) or (i + 3/4, j + 1/2) is seen\n"
     "  \"G1_facet_mean\"  visible / front_facing\n"
-    "  \"G1_projected\"   the seen share of K points per facet, facets weighted by their area projected on the view\n"
-    "  \"bins\"           with --bins: slopes \"from\", \"to\", \"facets\", \"visible\", and \"G1\" over the K points\n"
+    "  \"G1_projected\"   the seen share of K points per facet, facets weighted by their area projected on "
+    "the view\n"
+    "  \"bins\"           with --bins: slopes \"from\", \"to\", \"facets\", \"visible\", and \"G1\" over the "
+    "K points\n"
     "and each pair of views \"a\" and \"b\" (0 is the first)\n"
     "  \"facing_both\", \"both_visible\"   facets that face both; that both see\n"
     "  \"G2\"             both_visible / facing_both\n"
-    "\"..._error\" is a standard error from 16 blocks of the surface: how far another surface of its kind would lie.\n"};
+    "\"..._error\" is a standard error from 16 blocks of the surface: how far another surface of its kind "
+    "would lie.\n"};
 
 typedef struct mu_asked {
     mu_measuring s;
@@ -58,7 +63,8 @@ static _Bool read_transform(mu_asked *asked, const mu_options *at) {
 }
 
 static _Bool read_view(mu_asked *asked, const mu_options *at) {
-    if (asked->s.view_count == MU_MOST_VIEWS) return mu_refuse(&usage, "more than %d views", MU_MOST_VIEWS), 0;
+    if (asked->s.view_count == MU_MOST_VIEWS)
+        return mu_refuse(&usage, "more than %d views", MU_MOST_VIEWS), 0;
     double *w = asked->s.views[asked->s.view_count].w;
     if (!mu_options_numbers(at, 3, 3, w)) return 0;
     if (!(w[2] > 0))

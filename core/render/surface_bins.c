@@ -60,8 +60,10 @@ static uint32_t find(const double *edges, uint32_t bins, double slope) {
     if (!(slope >= edges[0] && slope < edges[bins])) return bins;
     while (high - low > 1) {
         const uint32_t middle = (low + high) / 2;
-        if (slope >= edges[middle]) low = middle;
-        else high = middle;
+        if (slope >= edges[middle])
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }

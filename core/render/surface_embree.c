@@ -45,9 +45,10 @@ static void skip_own(const struct RTCFilterFunctionNArguments *args) {
 static _Bool bake(surface *s, RTCGeometry mesh) {
     const uint32_t n = s->f.n;
     const size_t side = (size_t)n + 1;
-    float *v = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), side * side);
-    uint32_t *t = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                          2 * (size_t)n * n);
+    float *v = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                       side * side);
+    uint32_t *t = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                          3 * sizeof(uint32_t), 2 * (size_t)n * n);
     if (!v || !t) return 0;
     for (uint32_t i = 0; i <= n; i++)
         for (uint32_t j = 0; j <= n; j++) {
@@ -121,14 +122,25 @@ static _Bool reach(const surface *s, const mu_sight *sight, int32_t tiles[4], mu
     tiles[0] = tile(i0 - 1, s->f.n), tiles[1] = tile(i1 + (int32_t)s->f.n, s->f.n);
     tiles[2] = tile(j0 - 1, s->f.n), tiles[3] = tile(j1 + (int32_t)s->f.n, s->f.n);
     const int64_t all = ((int64_t)tiles[1] - tiles[0] + 1) * ((int64_t)tiles[3] - tiles[2] + 1);
-    return all <= MOST_TILES || mu_fail(error, "the view %g,%g,%g reaches over %lld periods; Embree is given %d at most",
-                                        sight->w[0], sight->w[1], sight->w[2], (long long)all, MOST_TILES);
+    return all <= MOST_TILES ||
+           mu_fail(error, "the view %g,%g,%g reaches over %lld periods; Embree is given %d at most",
+                   sight->w[0], sight->w[1], sight->w[2], (long long)all, MOST_TILES);
 }
 
 static void attach(const surface *s, RTCScene tiles, int32_t a, int32_t b, unsigned id) {
     const double n = s->f.n;
-    const float shift[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, (float)(n * (s->m[0] * a + s->m[1] * b)),
-                             (float)(n * (s->m[2] * a + s->m[3] * b)), 0};
+    const float shift[12] = {1,
+                             0,
+                             0,
+                             0,
+                             1,
+                             0,
+                             0,
+                             0,
+                             1,
+                             (float)(n * (s->m[0] * a + s->m[1] * b)),
+                             (float)(n * (s->m[2] * a + s->m[3] * b)),
+                             0};
     RTCGeometry instance = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, s->period);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, shift);

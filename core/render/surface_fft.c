@@ -33,7 +33,8 @@ mu_fft *mu_fft_make(uint32_t n) {
     fft->back = kiss_fft_alloc((int)n, 1, NULL, NULL);
     fft->modes = malloc((size_t)n * (n / 2 + 1) * sizeof *fft->modes);
     fft->columns = malloc((size_t)n * (BLOCK + 1) * sizeof *fft->columns);
-    if (fft->row_forward && fft->row_back && fft->forward && fft->back && fft->modes && fft->columns) return fft;
+    if (fft->row_forward && fft->row_back && fft->forward && fft->back && fft->modes && fft->columns)
+        return fft;
     mu_fft_free(fft);
     return NULL;
 }
@@ -60,7 +61,8 @@ static _Bool apply(void *context, float *field, uint32_t n,
     for (uint32_t b0 = 0; b0 < width; b0 += BLOCK) {
         const uint32_t count = width - b0 < BLOCK ? width - b0 : BLOCK;
         for (size_t a = 0; a < n; a++)
-            for (uint32_t b = 0; b < count; b++) fft->columns[(size_t)b * n + a] = fft->modes[a * width + b0 + b];
+            for (uint32_t b = 0; b < count; b++)
+                fft->columns[(size_t)b * n + a] = fft->modes[a * width + b0 + b];
         for (uint32_t b = 0; b < count; b++) {
             kiss_fft_cpx *const column = fft->columns + (size_t)b * n;
             kiss_fft(fft->forward, column, moved);
@@ -72,7 +74,8 @@ static _Bool apply(void *context, float *field, uint32_t n,
             kiss_fft(fft->back, moved, column);
         }
         for (size_t a = 0; a < n; a++)
-            for (uint32_t b = 0; b < count; b++) fft->modes[a * width + b0 + b] = fft->columns[(size_t)b * n + a];
+            for (uint32_t b = 0; b < count; b++)
+                fft->modes[a * width + b0 + b] = fft->columns[(size_t)b * n + a];
     }
     for (size_t a = 0; a < n; a++) kiss_fftri(fft->row_back, fft->modes + a * width, field + a * n);
     return 1;

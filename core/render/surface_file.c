@@ -13,8 +13,8 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
     (void)context, (void)code, (void)message;
 }
 
-static int64_t take(exr_const_context_t context, void *data, const void *bytes, uint64_t size, uint64_t offset,
-                    exr_stream_error_func_ptr_t report) {
+static int64_t take(exr_const_context_t context, void *data, const void *bytes, uint64_t size,
+                    uint64_t offset, exr_stream_error_func_ptr_t report) {
     (void)context, (void)report;
     return mu_output_write(data, bytes, size, offset) ? (int64_t)size : -1;
 }
@@ -32,14 +32,18 @@ static exr_result_t put_head(exr_context_t exr, uint32_t n, const mu_surface_inf
     int part = -1;
     char number[32];
     exr_result_t code = exr_add_part(exr, "surface", EXR_STORAGE_SCANLINE, &part);
-    code = code ? code : exr_initialize_required_attr_simple(exr, 0, (int32_t)n, (int32_t)n, EXR_COMPRESSION_ZIP);
+    code = code ? code
+                : exr_initialize_required_attr_simple(exr, 0, (int32_t)n, (int32_t)n, EXR_COMPRESSION_ZIP);
     code = code ? code : exr_add_channel(exr, 0, "Y", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1);
     code = code ? code : exr_attr_set_string(exr, 0, "software", "musurf " MUSURF_VERSION);
-    code = code ? code : exr_attr_set_string(exr, 0, "layout", "heights; scanline = x, pixel in it = y, cell 1, periodic");
+    code = code ? code
+                : exr_attr_set_string(exr, 0, "layout",
+                                      "heights; scanline = x, pixel in it = y, cell 1, periodic");
     if (code || !info) return code;
     code = exr_attr_set_string(exr, 0, "command", info->command);
     code = code ? code : put_law(exr, &info->recipe->law);
-    snprintf(number, sizeof number, "%llu", (unsigned long long)info->recipe->seed); /* EXR has no 64-bit integers */
+    snprintf(number, sizeof number, "%llu",
+             (unsigned long long)info->recipe->seed); /* EXR has no 64-bit integers */
     code = code ? code : exr_attr_set_string(exr, 0, "seed", number);
     code = code ? code : exr_attr_set_double(exr, 0, "correlation", info->recipe->correlation);
     code = code ? code : exr_attr_set_double(exr, 0, "clip", info->recipe->clip);
@@ -56,7 +60,8 @@ static exr_result_t put_heights(exr_context_t exr, const mu_heightfield *f, floa
         exr_chunk_info_t chunk;
         code = exr_write_scanline_chunk_info(exr, 0, (int)i, &chunk);
         if (code) break;
-        code = i ? exr_encoding_update(exr, 0, &chunk, &pipe) : exr_encoding_initialize(exr, 0, &chunk, &pipe);
+        code =
+            i ? exr_encoding_update(exr, 0, &chunk, &pipe) : exr_encoding_initialize(exr, 0, &chunk, &pipe);
         if (code) break;
         const size_t count = (size_t)chunk.height * f->n, from = (size_t)i * f->n;
         for (size_t k = 0; k < count; k++) block[k] = (float)f->h[from + k];
@@ -73,7 +78,8 @@ static exr_result_t put_heights(exr_context_t exr, const mu_heightfield *f, floa
     return code;
 }
 
-_Bool mu_surface_write(const char *file, const mu_heightfield *f, const mu_surface_info *info, mu_error *error) {
+_Bool mu_surface_write(const char *file, const mu_heightfield *f, const mu_surface_info *info,
+                       mu_error *error) {
     mu_output output;
     if (!mu_output_open(&output, file, error)) return 0;
     exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;

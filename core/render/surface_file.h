@@ -23,7 +23,8 @@ typedef struct mu_surface_info {
     double steepest;     /* slope */
 } mu_surface_info;
 
-_Bool mu_surface_write(const char *file, const mu_heightfield *f, const mu_surface_info *info, mu_error *error);
+_Bool mu_surface_write(const char *file, const mu_heightfield *f, const mu_surface_info *info,
+                       mu_error *error);
 /* Heights in malloc'ed memory, all finite; NULL after an error. */
 double *mu_surface_read(const char *file, uint32_t *n, mu_error *error);
 

@@ -52,14 +52,15 @@ static _Bool look(const mu_measuring *s, void *surface, const double w[3], int u
     return 1;
 }
 
-static _Bool look_everywhere(const mu_measuring *s, void *surface, mu_view *view, uint8_t *spare, uint32_t *done,
-                             mu_error *error) {
+static _Bool look_everywhere(const mu_measuring *s, void *surface, mu_view *view, uint8_t *spare,
+                             uint32_t *done, mu_error *error) {
     static const double one[2][2] = {{0.25, 0.5}, {0.75, 0.5}};
     const uint32_t side = s->side, each = 2 * side * side + (side % 2 ? 0 : 2), all = s->view_count * each;
     for (int upper = 0; upper < 2; upper++) {
         if (side % 2 == 0) { /* the one point is not among the many */
             if (s->progress) s->progress(s->context, (*done)++, all);
-            if (!look(s, surface, view->w, upper, one[upper], view->seen[upper], NULL, spare, error)) return 0;
+            if (!look(s, surface, view->w, upper, one[upper], view->seen[upper], NULL, spare, error))
+                return 0;
         }
         for (uint32_t k = 0; k < 2 * side; k++)
             for (uint32_t l = 0; l < side; l++) {
@@ -67,8 +68,8 @@ static _Bool look_everywhere(const mu_measuring *s, void *surface, mu_view *view
                 const double point[2] = {(k + 0.5) / (2 * side), (l + 0.5) / side};
                 const _Bool middle = side % 2 && l == side / 2 && k == (upper ? 3 * side : side) / 2;
                 if (s->progress) s->progress(s->context, (*done)++, all);
-                if (!look(s, surface, view->w, upper, middle ? one[upper] : point, middle ? view->seen[upper] : NULL,
-                          view->count[upper], spare, error))
+                if (!look(s, surface, view->w, upper, middle ? one[upper] : point,
+                          middle ? view->seen[upper] : NULL, view->count[upper], spare, error))
                     return 0;
             }
     }
@@ -149,7 +150,8 @@ void mu_measure_pair(const mu_measuring *s, mu_pair *pair) {
                 const size_t at = (size_t)i * n + j;
                 double slope[2];
                 mu_facet_slope(&s->f, i, j, upper, slope);
-                if (!(mu_facet_facing(s->m, slope, a->w) > 0 && mu_facet_facing(s->m, slope, b->w) > 0)) continue;
+                if (!(mu_facet_facing(s->m, slope, a->w) > 0 && mu_facet_facing(s->m, slope, b->w) > 0))
+                    continue;
                 const uint8_t both = a->seen[upper][at] & b->seen[upper][at];
                 const uint32_t block = mu_block(n, i, j);
                 blocks.bottom[block]++;

@@ -46,8 +46,8 @@ typedef struct mu_measuring {
     double m[4];
     const mu_tracer *tracer;
     uint32_t side, threads, view_count;
-    uint32_t bin_count;  /* 0: no bins */
-    const double *edges; /* bin_count + 1; NULL: as many facets in each */
+    uint32_t bin_count;           /* 0: no bins */
+    const double *edges;          /* bin_count + 1; NULL: as many facets in each */
     mu_view views[MU_MOST_VIEWS]; /* w given; the rest is filled */
     void (*progress)(void *context, uint32_t done, uint32_t all);
     void *context;

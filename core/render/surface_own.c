@@ -14,7 +14,8 @@ const mu_tracer *mu_tracer_get(int index) {
 
 _Bool mu_tracer_walk_fail(mu_walk_result result, const mu_sight *sight, mu_error *error) {
     if (result == MU_WALK_NO_MEMORY) return mu_fail(error, "not enough memory to follow the rays");
-    return mu_fail(error, "the view %g,%g,%g is so near the horizon that its rays pass over more than %d edges",
+    return mu_fail(error,
+                   "the view %g,%g,%g is so near the horizon that its rays pass over more than %d edges",
                    sight->w[0], sight->w[1], sight->w[2], MU_WALK_MOST);
 }
 

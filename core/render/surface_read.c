@@ -14,12 +14,13 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
     (void)context, (void)code, (void)message;
 }
 
-static _Bool check_head(exr_context_t exr, const char *file, uint32_t *n, exr_attr_box2i_t *window, mu_error *error) {
+static _Bool check_head(exr_context_t exr, const char *file, uint32_t *n, exr_attr_box2i_t *window,
+                        mu_error *error) {
     int parts = 0;
     exr_storage_t storage;
     const exr_attr_chlist_t *channels = NULL;
-    if (exr_get_count(exr, &parts) || exr_get_storage(exr, 0, &storage) || exr_get_channels(exr, 0, &channels) ||
-        exr_get_data_window(exr, 0, window))
+    if (exr_get_count(exr, &parts) || exr_get_storage(exr, 0, &storage) ||
+        exr_get_channels(exr, 0, &channels) || exr_get_data_window(exr, 0, window))
         return mu_fail(error, "%s: its header is damaged", file);
     if (parts != 1 || storage != EXR_STORAGE_SCANLINE)
         return mu_fail(error, "%s: a heightfield is an EXR of one scanline part; this has %d %s", file, parts,
@@ -30,10 +31,11 @@ static _Bool check_head(exr_context_t exr, const char *file, uint32_t *n, exr_at
         return mu_fail(error, "%s: heights are 32-bit floats; channel \"%s\" is %s", file,
                        channels->entries[0].name.str,
                        channels->entries[0].pixel_type == EXR_PIXEL_HALF ? "half" : "of whole numbers");
-    const int64_t width = (int64_t)window->max.x - window->min.x + 1, height = (int64_t)window->max.y - window->min.y + 1;
+    const int64_t width = (int64_t)window->max.x - window->min.x + 1,
+                  height = (int64_t)window->max.y - window->min.y + 1;
     if (width != height || width < MU_SURFACE_LEAST || width > MU_SURFACE_MOST)
-        return mu_fail(error, "%s: is %lld x %lld; a heightfield is n x n, n from %d to %d", file, (long long)width,
-                       (long long)height, MU_SURFACE_LEAST, MU_SURFACE_MOST);
+        return mu_fail(error, "%s: is %lld x %lld; a heightfield is n x n, n from %d to %d", file,
+                       (long long)width, (long long)height, MU_SURFACE_LEAST, MU_SURFACE_MOST);
     if (channels->entries[0].x_sampling != 1 || channels->entries[0].y_sampling != 1)
         return mu_fail(error, "%s: its channel is subsampled", file);
     *n = (uint32_t)width;
@@ -49,7 +51,8 @@ static exr_result_t get_lines(exr_context_t exr, const exr_attr_box2i_t *window,
         exr_chunk_info_t chunk;
         code = exr_read_scanline_chunk_info(exr, 0, window->min.y + (int)i, &chunk);
         if (code) break;
-        code = i ? exr_decoding_update(exr, 0, &chunk, &pipe) : exr_decoding_initialize(exr, 0, &chunk, &pipe);
+        code =
+            i ? exr_decoding_update(exr, 0, &chunk, &pipe) : exr_decoding_initialize(exr, 0, &chunk, &pipe);
         if (code) break;
         pipe.channels[0].decode_to_ptr = (uint8_t *)(out + (size_t)i * n);
         pipe.channels[0].user_pixel_stride = sizeof(float);
@@ -71,7 +74,8 @@ static double *get_heights(exr_context_t exr, const char *file, uint32_t *n, mu_
     double *h = malloc(count * sizeof *h);
     _Bool good = lines && h;
     if (!good) mu_fail(error, "%s: not enough memory for %u x %u heights", file, *n, *n);
-    if (good && get_lines(exr, &window, *n, lines)) good = mu_fail(error, "%s: is truncated or damaged", file);
+    if (good && get_lines(exr, &window, *n, lines))
+        good = mu_fail(error, "%s: is truncated or damaged", file);
     for (size_t k = 0; good && k < count; k++) {
         h[k] = (double)lines[k];
         if (!isfinite(h[k]))

@@ -20,7 +20,8 @@ static void *take_rows(void *data) {
     for (;;) {
         const uint32_t first = atomic_fetch_add(&job->next, TAKEN);
         if (first >= job->count) return NULL;
-        for (uint32_t row = first; row < first + TAKEN && row < job->count; row++) job->work(job->context, row);
+        for (uint32_t row = first; row < first + TAKEN && row < job->count; row++)
+            job->work(job->context, row);
     }
 }
 
@@ -28,7 +29,8 @@ void mu_rows(uint32_t count, uint32_t threads, void (*work)(void *context, uint3
     mu_rows_job job = {.count = count, .work = work, .context = context};
     pthread_t started[MOST_THREADS];
     uint32_t more = 0;
-    while (more + 1 < threads && more < MOST_THREADS && pthread_create(&started[more], NULL, take_rows, &job) == 0)
+    while (more + 1 < threads && more < MOST_THREADS &&
+           pthread_create(&started[more], NULL, take_rows, &job) == 0)
         more++;
     take_rows(&job);
     for (uint32_t k = 0; k < more; k++) pthread_join(started[k], NULL);

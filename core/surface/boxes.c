@@ -17,8 +17,8 @@ static void put(mu_triangle *out, const double p[3], const double a[3], const do
     }
 }
 
-void mu_soup_wave(mu_soup *soup, mu_triangle out[MU_WAVE_TRIANGLES], double period, double depth, double width,
-                  double height, double slant) {
+void mu_soup_wave(mu_soup *soup, mu_triangle out[MU_WAVE_TRIANGLES], double period, double depth,
+                  double width, double height, double slant) {
     *soup = (mu_soup){out, MU_WAVE_TRIANGLES, {{period, 0}, {0, depth}}};
     const double y[3] = {0, depth, 0}, rise[3] = {slant, 0, height}, fall[3] = {-slant, 0, -height};
     put(out, (const double[3]){width, 0, 0}, (const double[3]){period - width, 0, 0}, y);
@@ -33,13 +33,14 @@ void mu_soup_box(mu_soup *soup, mu_triangle out[MU_BOX_TRIANGLES], double period
     const double gap = period - width, zero[3] = {0, 0, 0};
     const double x[3] = {width, 0, 0}, y[3] = {0, width, 0}, up[3] = {slant[0], slant[1], height};
     put(out, up, x, y);
-    put(out + 2, zero, x, up);                                            /* toward -y */
-    put(out + 4, y, up, x);                                               /* toward +y */
-    put(out + 6, zero, up, y);                                            /* toward -x */
-    put(out + 8, x, y, up);                                               /* toward +x */
-    put(out + 10, x, (const double[3]){gap, 0, 0}, y);                    /* the ground beside it, */
-    put(out + 12, y, x, (const double[3]){0, gap, 0});                    /* behind it, and at the corner */
-    put(out + 14, (const double[3]){width, width, 0}, (const double[3]){gap, 0, 0}, (const double[3]){0, gap, 0});
+    put(out + 2, zero, x, up);                         /* toward -y */
+    put(out + 4, y, up, x);                            /* toward +y */
+    put(out + 6, zero, up, y);                         /* toward -x */
+    put(out + 8, x, y, up);                            /* toward +x */
+    put(out + 10, x, (const double[3]){gap, 0, 0}, y); /* the ground beside it, */
+    put(out + 12, y, x, (const double[3]){0, gap, 0}); /* behind it, and at the corner */
+    put(out + 14, (const double[3]){width, width, 0}, (const double[3]){gap, 0, 0},
+        (const double[3]){0, gap, 0});
 }
 
 void mu_soup_turn_over(mu_soup *soup) {

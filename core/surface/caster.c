@@ -145,9 +145,12 @@ mu_walk_result mu_cast_make(mu_cast **out, const mu_caster *caster, const mu_sig
     }
     for (size_t k = 0; k < walk.count; k++) {
         const mu_crossing *c = &walk.crossings[k];
-        cast->passes[k] = (mu_pass){wrapped(c->left[0], caster->n),  wrapped(c->left[1], caster->n),
-                                    wrapped(c->right[0], caster->n), wrapped(c->right[1], caster->n),
-                                    c->weight, c->rise};
+        cast->passes[k] = (mu_pass){wrapped(c->left[0], caster->n),
+                                    wrapped(c->left[1], caster->n),
+                                    wrapped(c->right[0], caster->n),
+                                    wrapped(c->right[1], caster->n),
+                                    c->weight,
+                                    c->rise};
     }
     mu_walk_free(&walk);
     *out = cast;

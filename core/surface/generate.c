@@ -14,14 +14,14 @@ static const double pi = 3.14159265358979323846;
 
 struct mu_generator {
     mu_recipe recipe;
-    size_t count;       /* cells */
-    double *h;          /* per cell */
-    float *wish;        /* per cell: quantiles in rising order */
-    float *gx, *gy;     /* per cell: by how much the differences to the next cell in x and y should change */
+    size_t count;   /* cells */
+    double *h;      /* per cell */
+    float *wish;    /* per cell: quantiles in rising order */
+    float *gx, *gy; /* per cell: by how much the differences to the next cell in x and y should change */
     mu_ranked *ranked, *spare;
-    double *cosine;     /* of 2 pi a / n */
-    double limit, cap;  /* the quantile `clip`, and the steepest wish that is granted */
-    double steepest;    /* over limit */
+    double *cosine;    /* of 2 pi a / n */
+    double limit, cap; /* the quantile `clip`, and the steepest wish that is granted */
+    double steepest;   /* over limit */
     uint32_t passes;
 };
 
@@ -180,7 +180,8 @@ static void diverge(mu_generator *g) {
     for (uint32_t i = 0; i < n; i++) {
         const size_t row = (size_t)i * n, before = (size_t)(i ? i - 1 : n - 1) * n;
         for (uint32_t j = 0; j < n; j++)
-            out[row + j] = g->gx[before + j] - g->gx[row + j] + g->gy[row + (j ? j - 1 : n - 1)] - g->gy[row + j];
+            out[row + j] =
+                g->gx[before + j] - g->gx[row + j] + g->gy[row + (j ? j - 1 : n - 1)] - g->gy[row + j];
     }
     memcpy(g->gx, out, g->count * sizeof *g->gx);
 }

@@ -25,7 +25,8 @@ _Bool mu_pyramid_make(mu_pyramid *p, const mu_heightfield *f) {
         p->level[l] = out;
         for (uint32_t i = 0; i < width; i++)
             for (uint32_t j = 0; j < width; j++) {
-                const size_t i1 = 2 * i + 1 < below ? 2 * i + 1 : 2 * i, j1 = 2 * j + 1 < below ? 2 * j + 1 : 2 * j;
+                const size_t i1 = 2 * i + 1 < below ? 2 * i + 1 : 2 * i,
+                             j1 = 2 * j + 1 < below ? 2 * j + 1 : 2 * j;
                 const double *a = from + (size_t)2 * i * below, *b = from + i1 * below;
                 *out++ = fmax(fmax(a[2 * j], a[j1]), fmax(b[2 * j], b[j1]));
             }

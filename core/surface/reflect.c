@@ -11,7 +11,8 @@ double mu_facet_mirror(const mu_heightfield *f, const double m[4], const double 
     double s[2];
     mu_facet_slope(f, i, j, upper, s);
     mu_facet_normal(m, s, normal);
-    const double macro = normal[2]; /* |det M|: twice the area over the plane, as `normal` is twice the facet's */
+    const double macro =
+        normal[2]; /* |det M|: twice the area over the plane, as `normal` is twice the facet's */
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     for (int k = 0; k < 3; k++) normal[k] /= length;
     const double cosine = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
@@ -19,10 +20,9 @@ double mu_facet_mirror(const mu_heightfield *f, const double m[4], const double 
     return cosine > 0 ? cosine * length / (2 * macro * w[2] * f->n * f->n) : 0;
 }
 
-void mu_reflect_row(const mu_caster *caster, const mu_heightfield *f, const double m[4], const double w[3], int upper,
-                    uint32_t i, const uint8_t *seen, uint8_t *both) {
-    mu_sight sight = {
-        .m = {m[0], m[1], m[2], m[3]}, .u = upper ? 0.75 : 0.25, .v = 0.5, .upper = upper};
+void mu_reflect_row(const mu_caster *caster, const mu_heightfield *f, const double m[4], const double w[3],
+                    int upper, uint32_t i, const uint8_t *seen, uint8_t *both) {
+    mu_sight sight = {.m = {m[0], m[1], m[2], m[3]}, .u = upper ? 0.75 : 0.25, .v = 0.5, .upper = upper};
     for (uint32_t j = 0; j < f->n; j++) {
         double normal[3];
         both[j] = seen[j] && mu_facet_mirror(f, m, w, i, j, upper, normal, sight.w) > 0 && sight.w[2] > 0 &&
@@ -46,8 +46,8 @@ double mu_reflection_density(const mu_heightfield *f, const double m[4], const d
     return albedo;
 }
 
-void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[3], const uint8_t *const both[2],
-                     const mu_directions *d, mu_group *groups) {
+void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[3],
+                     const uint8_t *const both[2], const mu_directions *d, mu_group *groups) {
     double normal[3], r[3];
     memset(groups, 0, (mu_directions_count(d) + 1) * sizeof *groups);
     for (uint32_t i = 0; i < f->n; i++)
@@ -61,7 +61,8 @@ void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[
             }
 }
 
-double mu_reflect_groups(const mu_group *groups, size_t count, const double w[3], const mu_lighting *lighting) {
+double mu_reflect_groups(const mu_group *groups, size_t count, const double w[3],
+                         const mu_lighting *lighting) {
     double sum = 0;
     for (size_t k = 0; k < count; k++) {
         const double *n = groups[k].normal;

@@ -18,8 +18,8 @@ double mu_facet_mirror(const mu_heightfield *f, const double m[4], const double 
                        int upper, double normal[3], double r[3]);
 
 /* V(v) V(r) of row i of one family, given V(v) of the row, `seen`; the point is (i + 1/4, j + 1/2) or (i + 3/4, ...). */
-void mu_reflect_row(const mu_caster *caster, const mu_heightfield *f, const double m[4], const double w[3], int upper,
-                    uint32_t i, const uint8_t *seen, uint8_t *both);
+void mu_reflect_row(const mu_caster *caster, const mu_heightfield *f, const double m[4], const double w[3],
+                    int upper, uint32_t i, const uint8_t *seen, uint8_t *both);
 
 /*
  * The BRDF with F = 1, mean per bin of the direction r weighted by cos, 1/sr, from V(v) V(r) of both families, n * n
@@ -32,8 +32,8 @@ double mu_reflection_density(const mu_heightfield *f, const double m[4], const d
 typedef struct mu_group {
     double normal[3], weight;
 } mu_group;
-void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[3], const uint8_t *const both[2],
-                     const mu_directions *d, mu_group *groups);
+void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[3],
+                     const uint8_t *const both[2], const mu_directions *d, mu_group *groups);
 
 /* Eq. (11f) from the groups, F and L asked once per group, at its mean normal. One colour. */
 typedef struct mu_lighting {
@@ -41,6 +41,7 @@ typedef struct mu_lighting {
     double (*radiance)(void *context, const double r[3]);
     void *context;
 } mu_lighting;
-double mu_reflect_groups(const mu_group *groups, size_t count, const double w[3], const mu_lighting *lighting);
+double mu_reflect_groups(const mu_group *groups, size_t count, const double w[3],
+                         const mu_lighting *lighting);
 
 #endif

@@ -190,10 +190,11 @@ static void bounds(const mu_soup *soup, double low[3], double high[3]) {
 static void reach(const mu_soup *soup, const double w[3], double range[4]) {
     double low[3], high[3];
     bounds(soup, low, high);
-    const double (*e)[2] = soup->period;
+    const double(*e)[2] = soup->period;
     const double det = e[0][0] * e[1][1] - e[0][1] * e[1][0], t = (high[2] - low[2]) / w[2];
     range[0] = range[2] = INFINITY, range[1] = range[3] = -INFINITY;
-    for (int corner = 0; corner < 8; corner++) { /* from anywhere to anywhere, at the start and at the end of the ray */
+    for (int corner = 0; corner < 8;
+         corner++) { /* from anywhere to anywhere, at the start and at the end of the ray */
         const double x = (corner & 1 ? 1 : -1) * (high[0] - low[0]) + (corner & 4 ? t * w[0] : 0);
         const double y = (corner & 2 ? 1 : -1) * (high[1] - low[1]) + (corner & 4 ? t * w[1] : 0);
         const double a = (x * e[1][1] - y * e[1][0]) / det, b = (e[0][0] * y - e[0][1] * x) / det;

@@ -32,8 +32,8 @@ enum { MU_WAVE_TRIANGLES = 8, MU_BOX_TRIANGLES = 16 };
  * and `height` whose top is moved by `slant` along x; |slant| > 0 makes one side hang over. Fills 8 triangles: ground 0,
  * 1; rising side 2, 3; top 4, 5; falling side 6, 7.
  */
-void mu_soup_wave(mu_soup *soup, mu_triangle out[MU_WAVE_TRIANGLES], double period, double depth, double width,
-                  double height, double slant);
+void mu_soup_wave(mu_soup *soup, mu_triangle out[MU_WAVE_TRIANGLES], double period, double depth,
+                  double width, double height, double slant);
 /*
  * A parallelepiped amid a square of ground of side `period`: foot of `width` a side with its corner at the origin, top
  * moved by slant[2]. Fills 16 triangles: top 0, 1; sides 2 to 9; ground 10 to 15.

@@ -8,7 +8,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-void mu_slope_shares(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins, double *shares) {
+void mu_slope_shares(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins,
+                     double *shares) {
     const double one = 1 / ((double)f->n * f->n);
     memset(shares, 0, bins * sizeof *shares);
     for (uint32_t i = 0; i < f->n; i++)
@@ -64,7 +65,8 @@ void mu_normal_density(const mu_heightfield *f, const double m[4], const mu_dire
                 double s[2], normal[3];
                 mu_facet_slope(f, i, j, upper, s);
                 mu_facet_normal(m, s, normal);
-                const double area = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+                const double area =
+                    sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
                 out[mu_directions_bin(d, normal)] += one * area / normal[2];
             }
     per_solid_angle(d, out);

@@ -14,7 +14,8 @@
 
 /* Shares of the steepness of one family (MU_LOWER, MU_UPPER) in `bins` bins that have the mass 1/bins each under the
  * law. M is the identity. */
-void mu_slope_shares(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins, double *shares);
+void mu_slope_shares(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins,
+                     double *shares);
 /* The relative rms deviation of these shares from 1/bins; bins <= 256. */
 double mu_slope_deviation(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins);
 

@@ -18,7 +18,8 @@ _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], doub
     mu_stepper best = *s;
     _Bool found = 0;
     for (int k = 0; k < 3; k++) {
-        const int32_t *a = corners[upper][k], *b = corners[upper][(k + 1) % 3], *p = corners[upper][(k + 2) % 3];
+        const int32_t *a = corners[upper][k], *b = corners[upper][(k + 1) % 3],
+                      *p = corners[upper][(k + 2) % 3];
         double left = mu_stepper_side(s, a), right = mu_stepper_side(s, b);
         if ((left >= 0) == (right >= 0)) continue;
         if (left < 0) {
@@ -38,8 +39,8 @@ _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], doub
     return found;
 }
 
-mu_walk_result mu_walk_make(mu_walk *walk, const double m[4], const double w[3], double u, double v, int upper,
-                            double range) {
+mu_walk_result mu_walk_make(mu_walk *walk, const double m[4], const double w[3], double u, double v,
+                            int upper, double range) {
     mu_stepper s;
     size_t room = 0;
     *walk = (mu_walk){NULL, 0};
@@ -47,7 +48,8 @@ mu_walk_result mu_walk_make(mu_walk *walk, const double m[4], const double w[3],
     for (mu_stepper_next(&s); s.edge.rise <= range; mu_stepper_next(&s)) {
         if (walk->count == room) {
             room = room ? 2 * room : 64;
-            mu_crossing *more = walk->count < MU_WALK_MOST ? realloc(walk->crossings, room * sizeof *more) : NULL;
+            mu_crossing *more =
+                walk->count < MU_WALK_MOST ? realloc(walk->crossings, room * sizeof *more) : NULL;
             if (!more) {
                 const _Bool long_one = walk->count >= MU_WALK_MOST;
                 mu_walk_free(walk);

@@ -28,11 +28,12 @@ typedef struct mu_crossing {
 } mu_crossing;
 
 typedef struct mu_stepper {
-    double e1[2], e2[2], from[2], along[2]; /* in the transformed plane; `along` has a largest component of 1 */
-    double climb;                           /* rise per unit of (q - from) . along, q the place */
-    int32_t behind[2];                      /* the third vertex of the triangle that the ray leaves next */
-    mu_crossing edge;                       /* where it leaves it */
-    double left, right;                     /* how far the edge's ends are on either side; left >= 0 > right */
+    double e1[2], e2[2], from[2],
+        along[2];       /* in the transformed plane; `along` has a largest component of 1 */
+    double climb;       /* rise per unit of (q - from) . along, q the place */
+    int32_t behind[2];  /* the third vertex of the triangle that the ray leaves next */
+    mu_crossing edge;   /* where it leaves it */
+    double left, right; /* how far the edge's ends are on either side; left >= 0 > right */
 } mu_stepper;
 
 /* Positive to the left of the ray. */
@@ -59,7 +60,8 @@ _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], doub
 
 static inline void mu_stepper_next(mu_stepper *s) {
     mu_crossing *const e = &s->edge;
-    const int32_t ahead[2] = {e->left[0] + e->right[0] - s->behind[0], e->left[1] + e->right[1] - s->behind[1]};
+    const int32_t ahead[2] = {e->left[0] + e->right[0] - s->behind[0],
+                              e->left[1] + e->right[1] - s->behind[1]};
     const double side = mu_stepper_side(s, ahead);
     int32_t *const replaced = side >= 0 ? e->left : e->right;
     s->behind[0] = replaced[0], s->behind[1] = replaced[1];
@@ -85,8 +87,8 @@ enum { MU_WALK_MOST = 1 << 23 }; /* crossings: 256 MB */
  * the border of the ray's own triangle, and a triangle that faces w lies below the rays that leave it: no ray can meet
  * its own triangle, whatever rounding does. Free with mu_walk_free.
  */
-mu_walk_result mu_walk_make(mu_walk *walk, const double m[4], const double w[3], double u, double v, int upper,
-                            double range);
+mu_walk_result mu_walk_make(mu_walk *walk, const double m[4], const double w[3], double u, double v,
+                            int upper, double range);
 void mu_walk_free(mu_walk *walk);
 
 #endif

@@ -116,7 +116,7 @@ static double seen_area(const mu_soup *soup, const double w[3]) {
 static void boxes_cover_the_plane(void **state) {
     (void)state;
     static const double maps[4][4] = {{1, 0, 0, 1}, {1, 2, 0, 1}, {0.3, -1.1, 0.8, 0.2}, {-4, 0.1, 0, 0.5}};
-    for (uint64_t trial = 0; trial < 40; trial++) {
+    for (uint64_t trial = 0; trial < 400; trial++) {
         mu_triangle room[MU_BOX_TRIANGLES];
         mu_soup soup;
         double u[8];

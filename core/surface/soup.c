@@ -9,7 +9,6 @@
  */
 #include "core/surface/soup.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -139,9 +138,6 @@ static void shadow_of(const frame *f, const mu_triangle *other, const double mov
         q[k][0] = dot(d, f->b);
         q[k][1] = dot(d, f->c);
         q[k][2] = dot(d, f->t);
-        /* A corner in the plane but for rounding is in it. */
-        const double rounding = fabs(d[0] * f->t[0]) + fabs(d[1] * f->t[1]) + fabs(d[2] * f->t[2]);
-        if (fabs(q[k][2]) < 32 * DBL_EPSILON * rounding) q[k][2] = 0;
     }
     for (int k = 0; k < 3; k++) {
         const double *a = q[k], *b = q[(k + 1) % 3];

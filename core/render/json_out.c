@@ -80,6 +80,23 @@ void mu_json_numbers(mu_json *json, const char *key, const double *values, size_
     put(json, "]", 1);
 }
 
+void mu_json_list_begin(mu_json *json, const char *key) {
+    put_key(json, key);
+    put(json, "[", 1);
+}
+
+void mu_json_list_add(mu_json *json, const mu_json *object) {
+    if (object->no_memory) json->no_memory = 1;
+    if (json->no_memory) return;
+    if (json->text[json->length - 1] != '[') put(json, ", ", 2);
+    put(json, object->text, object->length);
+    put(json, "}", 1);
+}
+
+void mu_json_list_end(mu_json *json) {
+    put(json, "]", 1);
+}
+
 _Bool mu_json_write(mu_json *json, FILE *out) {
     put(json, "}\n", 2);
     if (json->no_memory) {

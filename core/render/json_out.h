@@ -22,6 +22,10 @@ void mu_json_raw(mu_json *json, const char *key, const char *text, size_t length
 void mu_json_string(mu_json *json, const char *key, const char *text);
 void mu_json_number(mu_json *json, const char *key, double value);
 void mu_json_numbers(mu_json *json, const char *key, const double *values, size_t count);
+/* A list of objects: each is begun and filled in another mu_json and then added, which ends it. */
+void mu_json_list_begin(mu_json *json, const char *key);
+void mu_json_list_add(mu_json *json, const mu_json *object);
+void mu_json_list_end(mu_json *json);
 /* Ends the object and writes the line. False if memory or the file failed; errno says how. */
 _Bool mu_json_write(mu_json *json, FILE *out);
 void mu_json_free(mu_json *json);

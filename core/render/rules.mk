@@ -2,9 +2,9 @@
 # libmusurf_render and the command `musurf`. OpenImageIO stays in a module that is opened only when needed.
 RENDER_SOURCES := $(filter-out core/render/main.c,$(wildcard core/render/*.c))
 RENDER_OBJECTS := $(RENDER_SOURCES:%.c=$(BUILD)/obj/%.o)
-PKGS           := jansson assimp libpng OpenEXR
+PKGS           := jansson assimp libpng OpenEXR kissfft-float
 RENDER_CFLAGS  := $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
-RENDER_LIBS    := -lembree3 -lOpenEXRCore -lassimp -ljansson -lpng -lz -ldl -lm
+RENDER_LIBS    := -lembree3 -lOpenEXRCore -lassimp -ljansson -lpng -lkissfft-float -lz -ldl -lm
 
 LIBRARIES += $(BUILD)/libmusurf_render.a
 PROGRAMS  += $(BUILD)/musurf

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* command_surface.c: `musurf surface make|measure`, explicit microsurfaces. */
+#include "core/render/command_surface.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/render/command.h"
+#include "core/render/document.h"
+#include "core/render/error.h"
+
+static const mu_option no_options[] = {{NULL, NULL, NULL}};
+static const mu_usage usage = {
+    "surface", "make|measure ...",
+    "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
+    no_options,
+    "  make      a heightfield with the slopes of a distribution; see musurf surface make --help\n"
+    "  measure   facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
+    "\n"
+    "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j "
+    "in it is\n"
+    "y. Each cell splits along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = "
+    "(i+1,j+1),(i,j+1),(i+1,j).\n"};
+
+size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, double *out) {
+    const char *at = options->value;
+    size_t count = 0;
+    for (;;) {
+        char *end;
+        const double value = strtod(at, &end);
+        const _Bool spaced = *at == ' ' || *at == '\t' || *at == '\n';
+        if (end == at || spaced || !isfinite(value) || count == most) break;
+        out[count++] = value;
+        if (!*end && count >= least) return count;
+        if (*end != ',') break;
+        at = end + 1;
+    }
+    if (least == 1 && most == 1)
+        mu_refuse(options->usage, "--%s is \"%s\"; a number is needed", options->name, options->value);
+    else if (least == most)
+        mu_refuse(options->usage, "--%s is \"%s\"; %zu numbers with commas between are needed", options->name,
+                  options->value, least);
+    else
+        mu_refuse(options->usage, "--%s is \"%s\"; %zu to %zu numbers with commas between are needed",
+                  options->name, options->value, least, most);
+    return 0;
+}
+
+int mu_command_surface(int argc, char **argv) {
+    static const char *const known[] = {"make", "measure", NULL};
+    if (argc > 1 && strcmp(argv[1], "make") == 0) return mu_command_surface_make(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "measure") == 0) return mu_command_surface_measure(argc - 1, argv + 1);
+    mu_options given = mu_options_begin(&usage, argc, argv);
+    const int met = mu_options_next(&given);
+    if (met == MU_OPTIONS_HELP || met == MU_OPTIONS_REFUSED) return mu_options_exit(met);
+    if (met != MU_OPTIONS_OPERAND) return mu_refuse(&usage, "make or measure? See musurf surface --help");
+    const char *const nearest = mu_nearest(given.value, known);
+    return nearest ? mu_refuse(&usage, "there is no \"%.60s\"; did you mean \"%s\"?", given.value, nearest)
+                   : mu_refuse(&usage, "there is no \"%.60s\"; make or measure?", given.value);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* command_surface.h: what the commands `musurf surface ...` share. */
+#ifndef MU_COMMAND_SURFACE_H
+#define MU_COMMAND_SURFACE_H
+
+#include <stddef.h>
+
+#include "core/render/options.h"
+
+int mu_command_surface_make(int argc, char **argv);
+int mu_command_surface_measure(int argc, char **argv);
+
+/* The value of the option just met as `least` to `most` finite numbers, commas between; how many, or 0 after a line on
+ * stderr. */
+size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, double *out);
+
+#endif

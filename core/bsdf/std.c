@@ -13,7 +13,8 @@
 static inline real density(const base *b, const real u[3], real n2) {
     const real *s = b->shape;
     const real r2 = flat_square(u) / s[STD_B], z2 = larger(u[2] * u[2], REAL_MIN), t = n2 / (z2 + r2);
-    return smaller(R(INV_PI) * t * t * exp((2 - s[STD_GAMMA]) * log1p(r2 / z2)), REAL_MAX);
+    const real X = smaller(r2 / z2, REAL_MAX); /* finite, or gamma < 2 would make it the largest D there is */
+    return smaller(R(INV_PI) * t * t * exp((2 - s[STD_GAMMA]) * log1p(X)), REAL_MAX);
 }
 
 /* z Lambda = H r J(T), J = int_0^1 (1 + 1/(u T)²)^-p du, T² = b r² / z², p = gamma - 3/2; H: sigma at the horizon */

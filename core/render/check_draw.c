@@ -124,7 +124,7 @@ enum { GTR, GGX, STD, BECKMANN, SHEEN, PHONG, ELLIPSOID, FAMILIES };
 static void draw_family(int family, uint64_t turn, mu_stream *random, mu_draw *draw, char *head,
                         size_t size) {
     static const double gtr[] = {1.7, 0, 1, 3, 4, 2, 1 - 1e-7, 1 + 1e-7, 10, 1.5},
-                        student[] = {1.75, 6, 2.5, 2, 30, 1.9};
+                        student[] = {2.5, 1.75, 6, 2, 30, 1.9};
     const double alpha = draw->alpha, a = log_uniform(random, 0.5, 2), b = log_uniform(random, 0.5, 2);
     double gamma;
     switch (family) {

@@ -98,13 +98,14 @@ static mu_integral integrate(integral_context *c, const mu_check_effort *effort,
                              size_t parts, double rounding) {
     const _Bool parts_alike = integrand == visible_at || integrand == normalisation_at;
     const double target = fmax(c->subject->precision == MUSURF_FLOAT ? 1e-4 : effort->target, rounding);
-    const mu_quadrature q = {
-        .integrand = integrand,
-        .context = c,
-        .parts = parts,
-        .target = {target, parts_alike ? target : fmax(target, 1e-5), parts_alike ? target : 0, 0},
-        .panel_limit = effort->panels,
-        .rule = MU_KRONROD_15};
+    const mu_quadrature q = {.integrand = integrand,
+                             .context = c,
+                             .parts = parts,
+                             .target = {parts_alike ? target : fmax(target, 1e-6),
+                                        parts_alike ? target : fmax(target, 1e-4), parts_alike ? target : 0,
+                                        0},
+                             .panel_limit = effort->panels,
+                             .rule = MU_KRONROD_15};
     return mu_integrate(&q, (const double[2]){0, 1}, 6, (const double[2]){0, 2}, 4);
 }
 

@@ -70,7 +70,7 @@ static mu_cells *lobe_cells(const mu_subject *subject, const mu_check_effort *ef
         density->subject.precision = MUSURF_DOUBLE;
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3) return NULL;
     return mu_cells_make(&region, refracted ? refracted_density : reflected_density, density,
-                         refracted ? effort->cells / 2 : effort->cells);
+                         density->subject.precision == MUSURF_FLOAT ? effort->cells / 2 : effort->cells / 4);
 }
 
 static lobes lobes_make(const mu_subject *subject, const mu_check_effort *effort, const double view[3]) {

@@ -73,6 +73,7 @@ typedef struct MU(mu_fresnel) {
  * dielectric from this side. */
 void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]);
 real MU(fresnel_dielectric)(real eta, real cosine);
+real MU(fresnel_between)(real eta, real cosine, real g);
 
 /* A surface without microfacets (mirror.c). */
 void MU(mirror_sample)(const closure *c, const real u[3], sample *out);

@@ -14,8 +14,9 @@ static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
     return h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
 }
 
-/* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand. */
-static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
+/* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand.
+ * Returns the one that its normals alone would have. */
+static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
                                   real over_cos_oh, real sigma_i, real choice, real *pdf, real *reverse) {
     const real scale = c->map.view_z;
     if (MUTANT(5, 1, sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)) {
@@ -24,11 +25,13 @@ static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
         *pdf = smaller(quarter_d * (scale / larger(c->sigma, REAL_MIN)) * choice, saturated);
         *reverse = smaller(quarter_d * (scale / larger(sigma_i, REAL_MIN)) * choice, saturated);
     }
+    const real own = *pdf;
     if (plan == PLAN_FULL && sampler >= MU_SAMPLE_MIXED) { /* Appendix B: the balance heuristic */
         const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
         *pdf = (1 - share) * *pdf + uniform;
         *reverse = (1 - share) * *reverse + uniform;
     }
+    return own;
 }
 
 static inline void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, const real i[3],

@@ -141,6 +141,7 @@ _Bool mu_subject_find_sampler(mu_subject *subject) {
     for (int n = 0; n < 32; n++) {
         double u[3];
         for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
+        if (n & 1) u[2] = 0; /* the rarest of alternatives: what a mixture seldom draws */
         musurf_probe_sample s[3];
         for (int kind = 0; kind < 3; kind++)
             if (mu_subject_sample(subject, (musurf_sampler)kind, wo, u, &s[kind]) != MUSURF_OK) return 0;

@@ -62,6 +62,7 @@ static void check_relations(const run *r, uint64_t index, const mu_draw *draw, c
     const double *m = draw->m, bc = m[1] * m[2];
     const mu_deformation how = {.m = {m[0], m[1], m[2], m[3]},
                                 .tilt = {draw->tilt[0], draw->tilt[1]},
+                                .more = draw->found,
                                 .determinant = fma(m[0], m[3], -bc) + fma(-m[1], m[2], bc)};
     for (int k = 0; k < MU_VIEWS; k++) {
         mu_stream random = mu_stream_make(r->settings->seed, index << 8 | (uint64_t)(32 + k));

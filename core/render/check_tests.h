@@ -57,6 +57,7 @@ typedef struct mu_deformation {
     double m[4]; /* rows */
     double tilt[2];
     double determinant; /* of M, signed */
+    _Bool more;         /* the original is not isotropic itself: what its azimuths are, it alone knows */
 } mu_deformation;
 void mu_check_transform(const mu_subject *subject, const mu_subject *original, const mu_deformation *how,
                         const mu_check_effort *effort, const double view[3], mu_stream *random,

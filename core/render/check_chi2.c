@@ -63,7 +63,7 @@ static void integrate_cells(mu_cells *cells, density_context *d, double mean) {
                              .context = d,
                              .parts = 1,
                              .target = {mean * 1e-4},
-                             .panel_limit = 48,
+                             .panel_limit = 256,
                              .rule = MU_KRONROD_7};
     for (size_t row = 0; row < ROWS; row++)
         for (size_t c = 0; c < cells->count[row]; c++) {

@@ -63,6 +63,8 @@ static void check_sample(const point *p, const musurf_probe_sample *s, const dou
         musurf_probe_values pair;
         if (mu_subject_evaluate(p->subject, wo, NULL, s->wi, &pair) != MUSURF_OK) return;
         if (transmitted) {
+            if (mu_subject_blur(p->subject, wo, 1) > 1e-3)
+                return; /* F is that of a normal had back from wi */
             if (!mu_refracted(p->subject->eta, wo, s->wm, wi, &spread))
                 return; /* its edge, but for rounding */
             const double cosine = fabs(dot(wi, s->wm));

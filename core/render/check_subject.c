@@ -57,8 +57,10 @@ mu_answer mu_subject_ask(const mu_subject *subject, const double wo[3], const do
 
 double mu_subject_blur(const mu_subject *subject, const double view[3], _Bool refracted) {
     const double shortest = refracted ? fmin(view[2], fabs(subject->eta - 1)) : view[2];
+    /* the z of wo + eta wi is a difference, which a steep normal has little of */
+    const double steep = refracted ? fmax(1, subject->plane.narrowest * subject->plane.condition) : 1;
     return 16 * mu_subject_epsilon(subject) *
-           (subject->plane.condition + 1 / (shortest * fmin(1, subject->plane.narrowest)));
+           (subject->plane.condition + steep / (shortest * fmin(1, subject->plane.narrowest)));
 }
 
 static double signed_four(mu_stream *random) {

@@ -97,8 +97,9 @@ static void pull_back(const double b[4], const double *slopes, int count, const 
     }
 }
 
-_Bool mu_plane_from_slopes(mu_plane *plane, const double *slopes, int count, double *s) {
-    const double centre[2] = {median_of(slopes, count, 0, s), median_of(slopes, count, 1, s)};
+/* Tyler's fixed point about `centre`. */
+static _Bool shape_about(mu_plane *plane, const double *slopes, int count, const double centre[2],
+                         double *s) {
     double b[4] = {1, 0, 0, 1}; /* s = B (p - centre) */
     for (int step = 0; step < 60; step++) {
         pull_back(b, slopes, count, centre, s);
@@ -113,12 +114,28 @@ _Bool mu_plane_from_slopes(mu_plane *plane, const double *slopes, int count, dou
     double far;
     const double median = median_radius(s, count, &far);
     const double m[4] = {b[0], b[2], b[1], b[3]}; /* B = M^T */
-    const _Bool good = mu_plane_from_transform(plane, m, NULL, median, fmax(0, log(far / median)));
-    double off[2];
-    transform(plane->from_slope, centre, off);
-    if (hypot(off[0], off[1]) > 0.1) /* more than sampling noise */
-        plane->centre[0] = centre[0], plane->centre[1] = centre[1];
-    return good;
+    return mu_plane_from_transform(plane, m, NULL, median, fmax(0, log(far / median)));
+}
+
+_Bool mu_plane_from_slopes(mu_plane *plane, const double *slopes, int count, double *s) {
+    double centre[2] = {0, 0};
+    if (!shape_about(plane, slopes, count, centre, s)) return 0;
+    for (int again = 0; again < 2; again++) { /* the middle is looked for where the distribution is round */
+        double from[4], off[2];
+        for (int i = 0; i < 4; i++) from[i] = plane->from_slope[i];
+        pull_back(from, slopes, count, centre, s);
+        double *sorted = malloc((size_t)count * sizeof *sorted);
+        if (!sorted) return 0;
+        off[0] = median_of(s, count, 0, sorted), off[1] = median_of(s, count, 1, sorted);
+        free(sorted);
+        if (!(hypot(off[0], off[1]) > 0.2)) break; /* no more than sampling noise */
+        double moved[2];
+        transform(plane->to_slope, off, moved);
+        centre[0] += moved[0], centre[1] += moved[1];
+        if (!shape_about(plane, slopes, count, centre, s)) return 0;
+    }
+    plane->centre[0] = centre[0], plane->centre[1] = centre[1];
+    return 1;
 }
 
 /* Positive where slope p reflects v upwards. */

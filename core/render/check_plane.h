@@ -33,7 +33,7 @@ _Bool mu_plane_from_transform(mu_plane *plane, const double m[4], const double *
                               double spread);
 
 /* From `count` slopes (x, y pairs): the shape by Tyler's estimator, which needs no moments, the size by the
- * median radius, about the medians of x and y. `scratch` holds 2 count doubles. False if they lie on a line. */
+ * median radius; about their middle if that is not 0. `scratch` holds 2 count doubles. False if they lie on a line. */
 _Bool mu_plane_from_slopes(mu_plane *plane, const double *slopes, int count, double *scratch);
 
 typedef enum mu_region_kind { MU_WHOLE_PLANE, MU_VISIBLE_SLOPES, MU_REFLECTING_SLOPES } mu_region_kind;

@@ -118,6 +118,6 @@ mu_subject double_ggx_subject(const double_ggx *ggx) {
                           .sampler = MUSURF_SAMPLE_VISIBLE,
                           .json = "{\"material\": \"test.double_ggx\"}"};
     const double m[4] = {1, 0, 0, ggx->ax / ggx->ay};
-    mu_plane_from_transform(&subject.plane, m, ggx->ax, 0);
+    mu_plane_from_transform(&subject.plane, m, NULL, ggx->ax, 0);
     return subject;
 }

@@ -145,7 +145,7 @@ static void regions_map_there_and_back(void **state) {
     mu_stream random = mu_stream_make(7, 0);
     for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
         mu_plane plane;
-        assert_true(mu_plane_from_transform(&plane, maps[i], 0.05, 2));
+        assert_true(mu_plane_from_transform(&plane, maps[i], NULL, 0.05, 2));
         for (mu_region_kind kind = MU_WHOLE_PLANE; kind <= MU_REFLECTING_SLOPES; kind++) {
             const double view[3] = {0.36, 0.48, 0.8};
             const mu_region region = mu_region_make(&plane, kind, view);
@@ -167,7 +167,7 @@ static void regions_map_there_and_back(void **state) {
 static void singular_maps_are_refused(void **state) {
     (void)state;
     mu_plane plane;
-    assert_false(mu_plane_from_transform(&plane, (const double[4]){1, 2, 2, 4}, 1, 0));
+    assert_false(mu_plane_from_transform(&plane, (const double[4]){1, 2, 2, 4}, NULL, 1, 0));
 }
 
 /* Tyler's estimate from samples of a stretched and sheared distribution with heavy tails. */
@@ -207,7 +207,7 @@ static void run(const double_ggx *ggx, const double view[3], uint64_t stream, mu
     mu_tally_init(tally);
     mu_check_normalisation(&subject, &effort, tally);
     mu_check_visible(&subject, &effort, view, tally);
-    const mu_reflected reflected = mu_check_reflected(&subject, &effort, view, tally);
+    const mu_reflected reflected = mu_check_scattered(&subject, &effort, view, tally);
     mu_check_sampler(&subject, &effort, MUSURF_SAMPLE_NDF, view, &reflected, &random, tally);
     mu_check_sampler(&subject, &effort, MUSURF_SAMPLE_VISIBLE, view, &reflected, &random, tally);
     mu_check_points(&subject, &effort, view, &random, tally);

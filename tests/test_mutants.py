@@ -4,9 +4,11 @@
 """The tests, tested: wrong versions of the core must each be rejected by at least one check, the right one by none.
 
 core/bsdf/mutant.h holds the mistakes. For each, core and plugin alone are built again below $BUILD/mutants/n, and the fast
-checks run with that plugin. Prints which check rejects which mutant.
+checks run with that plugin until one rejects it. Prints which check rejects which mutant, and writes that to
+$BUILD/mutants.json: true, false, or null where the mutant was dead already.
 """
 import concurrent.futures
+import json
 import os
 import pathlib
 import re
@@ -67,7 +69,8 @@ def contract(folder):
     return [BUILD / "tests/test_abi_shading"], {"BUILD": str(folder)}
 
 
-CHECKS = {"reference": reference, "contract": contract, "check": musurf_check}
+# From the fastest to the slowest. A mutant runs on until the first that rejects it; the right core must pass them all.
+CHECKS = {"contract": contract, "reference": reference, "check": musurf_check}
 
 
 def rejects(check, folder):
@@ -79,22 +82,33 @@ def rejects(check, folder):
     return done.returncode != 0
 
 
+def judge(number):
+    """What each check says of a mutant: True, it rejects it; None: another one already has."""
+    folder, verdicts = build(number), dict.fromkeys(CHECKS)
+    for check in CHECKS:
+        verdicts[check] = rejects(check, folder)
+        if verdicts[check] and number:
+            break
+    return verdicts
+
+
 def main():
     known = mutants()
-    if sorted(known) != list(range(1, len(known) + 1)) or len(known) < 5:
+    if sorted(known) != list(range(1, len(known) + 1)) or len(known) < 12:
         sys.exit(f"mutants could not be read from core/bsdf/mutant.h: {known}")
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        folders = dict(zip([0, *known], pool.map(build, [0, *known])))
-        jobs = [(number, check) for number in folders for check in CHECKS]
-        killed = dict(zip(jobs, pool.map(lambda job: rejects(job[1], folders[job[0]]), jobs)))
+        matrix = dict(zip([0, *known], pool.map(judge, [0, *known])))
     width = max(map(len, known.values()))
     print(f"{'mutant':{width + 3}}" + "".join(f"{check:>11}" for check in CHECKS))
-    good = True
-    for number in folders:
-        row = [killed[number, check] for check in CHECKS]
-        good &= any(row) == (number > 0)
-        print(f"{number:2} {known.get(number, '(none)'):{width}}" + "".join(f"{'killed' if hit else '-':>11}" for hit in row)
-              + ("" if any(row) == (number > 0) else "   WRONG"))
+    good, rows = True, []
+    for number, verdicts in matrix.items():
+        right = any(verdicts.values()) == (number > 0)
+        good &= right
+        rows.append({"mutant": number, "what": known.get(number, "none: the right core"), "as_it_should_be": right, **verdicts})
+        words = {True: "killed", False: "-", None: ""}
+        print(f"{number:2} {known.get(number, '(none)'):{width}}" + "".join(f"{words[hit]:>11}" for hit in verdicts.values())
+              + ("" if right else "   WRONG"))
+    (BUILD / "mutants.json").write_text(json.dumps({"checks": list(CHECKS), "mutants": rows}, indent=1) + "\n")
     print("every mutant is killed, the right core is not" if good else "FAILED: a mutant lives, or the right core is rejected")
     return 0 if good else 1
 

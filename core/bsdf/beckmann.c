@@ -26,37 +26,28 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
     slope_normal(sqrt(-log1p(-u[0])), 1, u[1], n);
 }
 
-/* From below (a tilted surface, or a ray on its way up) GGX would propose steep facets that a Gaussian has not. There the
- * slope along w has the density (x - k) exp(-x²) beyond k = -w.z/|w.xy|, that across it exp(-y²). With x = k + t, either
- * t exp(-t²) proposes and exp(-2kt) accepts, or the other way round: at least 1 in 4. Not in the paper. */
-static void visible_from_below(const real w[3], random_stream *more, real n[3]) {
-    const real r = sqrt(flat_square(w)), k = smaller(-w[2] / larger(r, REAL_MIN), R(1e9));
-    const real along[2] = {r > 0 ? w[0] / r : 1, r > 0 ? w[1] / r : 0};
-    real t = 0;
-    for (int i = 0; i < 256; i++) {
-        const real once = -log(1 - random_next(more)), twice = -log(1 - random_next(more));
-        t = k < 1 ? sqrt(once) : (once + twice) / (2 * k);
-        if (random_next(more) < exp(k < 1 ? -2 * k * t : -t * t)) break;
+/* From far below, w = (r, 0, z), c = -z/r > 1: y is Gaussian, and x = c + s has the density s exp(-2cs - s²): a gamma deviate
+ * of shape 2, accepted with exp(-s²), at least 0.5. Not in the paper. */
+static void visible_from_below(const real w[3], real r, const real u[3], real n[3]) {
+    random_stream more = random_start(u);
+    const real c = -w[2] / r, y = random_normal(&more) * R(0.70710678118654752440);
+    real s = 0;
+    for (int k = 0; k < 128; k++) {
+        s = -log((1 - random_next(&more)) * (1 - random_next(&more))) / (2 * c);
+        if (random_next(&more) < exp(-s * s)) break;
     }
-    const real x = k + t, y = random_normal(more) * R(0.70710678118654752);
-    n[0] = along[0] * x - along[1] * y, n[1] = along[1] * x + along[0] * y, n[2] = 1;
+    n[0] = (w[0] * (c + s) - w[1] * y) / r;
+    n[1] = (w[1] * (c + s) + w[0] * y) / r;
+    n[2] = 1;
 }
 
-/* One GGX of the same peak proposes, exp(-X) (1 + X)² e/4 accepts: at least 0.38 of the normals, so that 128
- * in vain have probability below 1e-27. Not in the paper. */
+/* exp(-X) (1 + X)² is largest at X = 1: 4/e */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
-    random_stream more = random_start(u);
-    if (w[2] < 0) {
-        visible_from_below(w, &more, n);
-        return;
-    }
-    real u0 = u[0], u1 = u[1], accept = u[2];
-    for (int i = 0; i < 128; i++) {
-        cap_visible(w, 1, u0, u1, n);
-        const real n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-        if (accept * R(4 * INV_PI / 2.71828182845904524) < density(b, n, n2)) return;
-        u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
-    }
+    const real r = w[2] < 0 ? sqrt(flat_square(w)) : 0;
+    if (r > 0 && -w[2] > r)
+        visible_from_below(w, r, u, n);
+    else
+        cap_accepted(b, density, 1, R(4 * INV_PI / 2.71828182845904524), w, u, n);
 }
 
 static size_t table_bytes(const mu_definition *d) {

@@ -85,6 +85,7 @@ typedef struct MU(mu_fresnel) {
  * dielectric from this side. */
 void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]);
 real MU(fresnel_dielectric)(real eta, real cosine);
+real MU(fresnel_between)(real eta, real cosine, real g);
 
 /* K / E[K] of the flakes in the closure's footprint around the normal n, of squared length n2 (glint.c). */
 real MU(glint_count)(const closure *c, const real n[3], real n2);

@@ -17,7 +17,13 @@ static void schlick(const fresnel *f, real c, real out[3]) {
 real MU(fresnel_dielectric)(real eta, real c) {
     const real g2 = (eta - 1) * (eta + 1) + c * c;
     if (!(g2 > 0)) return eta == 1 ? 0 : 1;
-    const real g = sqrt(g2), sum = g + c, s = (eta - 1) * (eta + 1) / square(sum); /* (g - c) / (g + c) */
+    return MU(fresnel_between)(eta, c, sqrt(g2));
+}
+
+/* The same from both cosines, c and g = eta cos_t: next to total reflection, where F feels g alone, g from eta and c has
+ * few digits. */
+real MU(fresnel_between)(real eta, real c, real g) {
+    const real sum = g + c, s = (eta - 1) * (eta + 1) / square(sum); /* (g - c) / (g + c) */
     const real p = (c * sum - 1) / (c * (g - c) + 1);
     return smaller(s * s * (1 + p * p) / 2, 1); /* two roundings above 1 are still above 1 */
 }

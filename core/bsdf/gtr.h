@@ -33,6 +33,7 @@ enum {
     GTR_ALPHA,
     GTR_GAMMA,
     GTR_BOUND, /* gamma >= 2: the largest D / GGX; else 0 */
+    GTR_TURN,  /* gamma >= 2: the squared slope at which it is largest */
     GTR_LEFT,  /* gamma < 2: masses of the envelope's pieces, gtr_mixture.h */
     GTR_MIDDLE,
     GTR_MIDDLE_ROOT,

@@ -41,25 +41,16 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
                  u[1], n);
 }
 
-/* gamma < 2: one GGX of the mixture, then its cap. gamma >= 2: one GGX of the same peak proposes, and at
- * least 0.38 of the normals are accepted. Both loops are bounded: 128 in vain have probability below 1e-27.
- * Not in the paper. */
+/* gamma < 2: one GGX of the mixture, then its cap. Not in the paper. */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     const real *g = b->shape, unit = g[GTR_UNIT];
-    random_stream more = random_start(u);
     if (g[GTR_BOUND] == 0) {
+        random_stream more = random_start(u);
         const real r = sqrt(w[0] * w[0] + w[1] * w[1]) / unit;
         cap_visible(w, sqrt(mixture_u(g, r, w[2], u[2], &more)) / unit, u[0], u[1], n);
         return;
     }
-    real u0 = u[0], u1 = u[1], accept = u[2];
-    const int tries = w[2] < 0 ? FROM_BELOW : 128;
-    for (int i = 0; i < tries; i++) {
-        cap_visible(w, 1, u0, u1, n);
-        const real n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-        if (accept * g[GTR_BOUND] < density(b, n, n2)) return;
-        u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
-    }
+    cap_accepted(b, density, g[GTR_TURN], g[GTR_BOUND], w, u, n);
 }
 
 static double unit_of(double alpha, double gamma) {
@@ -91,8 +82,9 @@ static double shape_prepare(base *b, const mu_definition *definition) {
         const double x = fmax(0, (2 + (gamma - 2) * u2 - gamma * ref) / below);
         const double wide = (1 + x) / (1 + ref * x),
                      there = wide * wide * pow((1 + u2 * x) / (1 + ref * x), gamma - 2);
-        const double bound =
-            fmax(fmax(1, isfinite(there) ? there : 1), peak * peak * exp(-2 * (gamma - 2) * L));
+        const double end = peak * peak * exp(-2 * (gamma - 2) * L),
+                     bound = fmax(fmax(1, isfinite(there) ? there : 1), end);
+        g[GTR_TURN] = R(there >= fmax(1, end) ? x : 1e30); /* or it never falls */
         g[GTR_BOUND] = R(INV_PI * bound * (1 + 4 * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON)));
     } else {
         mixture_prepare(g, d, L);

@@ -39,7 +39,7 @@ pair_values MU(mu_pair)(const closure *c, const real wi[3]) {
     const real turn = transmitted ? -c->side : c->side;
     const real *o = c->wo, i[3] = {turn * wi[0], turn * wi[1], turn * wi[2]};
     if (!(i[2] > 0 && o[2] > 0) || (transmitted && !c->surface->transmission)) return out;
-    real facing;
+    real facing, facing_i = 0;
     if (transmitted) { /* wo.H / |H|, see refraction.h */
         const real eta = c->eta, sign = eta < 1 ? R(-1) : R(1);
         real apart2 = 0, along = 0, face_i = 0, up = 0;
@@ -50,12 +50,16 @@ pair_values MU(mu_pair)(const closure *c, const real wi[3]) {
         }
         const real H2 = square(eta - 1) + eta * apart2;
         if (!(along > 0 && face_i > 0 && up > 0 && H2 > 0)) return out;
-        facing = along / sqrt(H2);
+        facing = along / sqrt(H2), facing_i = face_i / sqrt(H2);
     } else {
         const real h[3] = {o[0] + i[0], o[1] + i[1], o[2] + i[2]};
         facing = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) / 2;
     }
-    MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(facing, 1), out.F);
+    if (transmitted)
+        out.F[0] = out.F[1] = out.F[2] =
+            MU(fresnel_between)(c->eta, smaller(facing, 1), c->eta * smaller(facing_i, 1));
+    else
+        MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(facing, 1), out.F);
     out.G2 = c->kernel ? c->kernel->shadowing(c, i, transmitted) : 1;
     return out;
 }

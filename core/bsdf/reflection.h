@@ -19,8 +19,9 @@ static inline int mixes(mu_sampler sampler) {
     return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
 }
 
-/* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand. */
-static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
+/* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand.
+ * Returns the one that its normals alone would have. */
+static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
                                   real over_cos_oh, const real i[3], real sigma_i, real choice, real *pdf,
                                   real *reverse) {
     const real scale = c->map.view_z;
@@ -32,11 +33,13 @@ static inline void reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
         *pdf = smaller(quarter_d * (scale / larger(shown_o, REAL_MIN)) * choice, saturated);
         *reverse = smaller(quarter_d * (scale / larger(shown_i, REAL_MIN)) * choice, saturated);
     }
+    const real own = *pdf;
     if (plan == PLAN_FULL && mixes(sampler)) { /* Appendix B: the balance heuristic */
         const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
         *pdf = (1 - share) * *pdf + uniform;
         *reverse = (1 - share) * *reverse + uniform;
     }
+    return own;
 }
 
 HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, const real i[3], value *out) {

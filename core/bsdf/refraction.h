@@ -52,8 +52,10 @@ static inline void refraction_eval(const closure *c, const real i[3], value *out
     real H[3];
     const real H2 = c->eta == 1 ? 0 : refraction_half(c, i, H);
     if (!(H2 > 0)) return;
-    const real facing = (H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2]) / sqrt(H2);
-    const real d = refraction_density(c, i, H, H2, MU(fresnel_dielectric)(c->eta, smaller(facing, 1)));
+    const real facing = (H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2]) / sqrt(H2),
+               facing_i = (H[0] * i[0] + H[1] * i[1] + H[2] * i[2]) / sqrt(H2);
+    const real F = MU(fresnel_between)(c->eta, smaller(facing, 1), c->eta * smaller(facing_i, 1));
+    const real d = refraction_density(c, i, H, H2, F);
     refraction_fill(c, i, d, glint(PLAN_FULL, c, H, H2), out->f, &out->pdf, &out->pdf_reverse);
 }
 

@@ -44,14 +44,13 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, shown), 1);
     real f = smaller(d / 4 * smaller(scale / open, saturated), saturated);
     const real choice = plan == PLAN_FULL && c->surface->transmission ? F[0] : 1;
-    reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, i, sigma_i, choice, &out->pdf, &out->pdf_reverse);
+    const real own = reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, i, sigma_i, choice, &out->pdf,
+                                    &out->pdf_reverse);
     real weight = ratio; /* F G2 / G1 */
     if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
         weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
-    if (plan == PLAN_FULL && mixes(sampler)) { /* its own density over that of the mixture */
-        const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
-        weight *= larger(out->pdf - uniform, 0) / larger(out->pdf, REAL_MIN) / (1 - share);
-    }
+    if (plan == PLAN_FULL && mixes(sampler)) /* its own density over that of the mixture */
+        weight *= own / larger(out->pdf, REAL_MIN);
     if (plan == PLAN_FULL) {
         const real flakes = glint(plan, c, m, 1);
         f = smaller(f * flakes, saturated), weight = smaller(weight * flakes, saturated);

@@ -49,7 +49,25 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
     slope_normal(part[0], part[1], u[1], n);
 }
 
-/* gamma >= 2: GGX of the same peak proposes, (1 + X)² (1 + X/b)^-gamma / bound accepts: at least 0.38. */
+/* From far below, w = (r, 0, z), c = -z/r > 1, gamma > 5/2: x = c + s has the density s (1 + (2cs + s²)/B)^(1/2 - gamma), B =
+ * b + c². Without s² that is a quotient of gamma deviates of shapes 2 and gamma - 5/2; y / sqrt(b + x²) has the density (1 +
+ * y²)^-gamma, a normal deviate over the root of a gamma deviate. Not in the paper. */
+static void visible_from_below(const real *shape, const real w[3], real r, const real u[3], real n[3]) {
+    random_stream more = random_start(u);
+    const real c = -w[2] / r, b = shape[STD_B], gamma = shape[STD_GAMMA], B = b + c * c;
+    real s = 0;
+    for (int k = 0; k < 1024; k++) {
+        s = exp(random_log_gamma(&more, 2) - random_log_gamma(&more, gamma - R(2.5))) * (B / (2 * c));
+        if (random_next(&more) < exp((R(0.5) - gamma) * log1p(s * s / (B + 2 * c * s)))) break;
+    }
+    const real x = c + s, y = random_normal(&more) * sqrt((b + x * x) / 2) *
+                              exp(-random_log_gamma(&more, gamma - R(0.5)) / 2);
+    n[0] = (w[0] * x - w[1] * y) / r;
+    n[1] = (w[1] * x + w[0] * y) / r;
+    n[2] = 1;
+}
+
+/* gamma >= 2: (1 + X)² (1 + X/b)^-gamma is largest at X = 1. */
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     const real *s = b->shape;
     if (s[STD_GAMMA] < 2) {
@@ -57,13 +75,11 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
         visible_by_parts(&p, b, w, u, n);
         return;
     }
-    random_stream more = random_start(u);
-    real u0 = u[0], u1 = u[1], accept = u[2];
-    for (int i = 0; i < 128; i++) {
-        cap_visible(w, 1, u0, u1, n);
-        if (accept * s[STD_BOUND] < density(b, n, n[0] * n[0] + n[1] * n[1] + n[2] * n[2])) return;
-        u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
-    }
+    const real r = w[2] < 0 ? sqrt(flat_square(w)) : 0;
+    if (r > 0 && -w[2] > r && s[STD_GAMMA] > R(2.6))
+        visible_from_below(s, w, r, u, n);
+    else
+        cap_accepted(b, density, 1, s[STD_BOUND], w, u, n);
 }
 
 static int octaves(double gamma) {

@@ -58,7 +58,7 @@ static void cut(double edge[], size_t count, const double sum[STEPS + 1]) {
 
 /* Placed so that a mutually wrong density and quantile cannot agree: the probability is integrated over the
  * cell. */
-static void integrate_cells(mu_cells *cells, density_context *d, double mean) {
+static void integrate_cells(mu_cells *cells, density_context *d, double mean, size_t pieces) {
     const mu_quadrature q = {.integrand = density_at,
                              .context = d,
                              .parts = 1,
@@ -69,16 +69,17 @@ static void integrate_cells(mu_cells *cells, density_context *d, double mean) {
         for (size_t c = 0; c < cells->count[row]; c++) {
             /* A wide cell starts from panels of 4 in t, so that no peak hides between the nodes. */
             const double *x = &cells->edge[row][c], reach = -log(cells->region.far) - cells->region.low;
-            const size_t columns = 1 + (size_t)((x[1] - x[0]) * reach / 4);
+            const size_t columns = pieces + (size_t)((x[1] - x[0]) * reach / 4);
             const double y[2] = {2. * (double)row / ROWS, 2. * (double)(row + 1) / ROWS};
-            const mu_integral cell = mu_integrate(&q, x, columns, y, 1);
+            const mu_integral cell = mu_integrate(&q, x, columns, y, pieces);
             cells->probability[row][c] = cell.value[0];
             cells->total += cell.value[0];
             cells->error = fmax(cells->error, cell.panels ? cell.error[0] / mean : INFINITY);
         }
 }
 
-mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void *context, size_t wanted) {
+mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void *context, size_t wanted,
+                        size_t pieces) {
     mu_cells *cells = calloc(1, sizeof *cells);
     double(*sums)[STEPS + 1] = malloc(ROWS * sizeof *sums);
     double total = 0;
@@ -92,7 +93,7 @@ mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void 
                 cells->count[row] = share < 1 ? 1 : share > ROW_CELLS ? ROW_CELLS : (size_t)(share + .5);
                 cut(cells->edge[row], cells->count[row], sums[row]);
             }
-            integrate_cells(cells, &d, total / (double)wanted);
+            integrate_cells(cells, &d, total / (double)wanted, pieces);
         }
     }
     free(sums);

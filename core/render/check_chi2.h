@@ -20,8 +20,10 @@ typedef double (*mu_slope_density)(void *context, const double m[3]);
 
 typedef struct mu_cells mu_cells;
 
-/* About `wanted` cells. NULL without memory, or if the density vanishes or is not finite. */
-mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void *context, size_t wanted);
+/* About `wanted` cells. Each is integrated from `pieces` by `pieces` panels on: more than 1 for a density with edges, lest
+ * one that cuts a corner off a cell pass between the nodes. NULL without memory, or if the density vanishes or is not finite. */
+mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void *context, size_t wanted,
+                        size_t pieces);
 void mu_cells_free(mu_cells *cells);
 
 /* Largest estimated error of a cell's probability, relative to the mean cell. */

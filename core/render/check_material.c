@@ -6,6 +6,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/render/material_settings.h"
+
+/* What the parameters of these names say; another type's materials may have none of them. */
+static mu_form form_of(const json_t *material) {
+    const json_t *masking = json_object_get(material, "masking");
+    const char *name = json_is_string(masking) ? json_string_value(masking) : "";
+    return !strcmp(name, "separable")              ? MU_FORM_SEPARABLE
+           : !strcmp(name, "direction_correlated") ? MU_FORM_DIRECTION
+                                                   : MU_FORM_HEIGHT;
+}
+
+static double eta_of(const mu_material *material, const json_t *json) {
+    const uint32_t refracts = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION;
+    if (!(material->plan.lobes & refracts)) return 0;
+    const musurf_param *p = mu_type_find(material->type, "fresnel.dielectric");
+    const json_t *index = json_object_get(json_object_get(json, "fresnel"), "dielectric");
+    return json_is_number(index) ? json_number_value(index) : p ? p->initial[0] : 0;
+}
+
 static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precision precision,
                    mu_error *error) {
     const musurf_material_type *type = out->material.type;
@@ -22,7 +41,9 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
                                 .material = out->material.compiled,
                                 .probe = probe,
                                 .precision = precision,
-                                .json = out->json};
+                                .json = out->json,
+                                .form = form_of(place->value),
+                                .eta = eta_of(&out->material, place->value)};
     const double up[3] = {0, 0, 1};
     musurf_probe_values values;
     memset(&values, 0, sizeof values);
@@ -30,7 +51,7 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
         return mu_place_fail(place, error, "the probe of %s does not answer", type->id);
     if (values.delta) return mu_place_fail(place, error, "is a mirror and has no density");
     if (!mu_subject_find_sampler(&out->subject))
-        return mu_place_fail(place, error, "is sampled neither by visible normals nor by D cos");
+        return mu_place_fail(place, error, "the probe of %s does not sample", type->id);
     return 1;
 }
 

@@ -3,6 +3,7 @@
 /* check_run.c: see check_run.h. */
 #include "core/render/check_run.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <time.h>
@@ -21,37 +22,53 @@ typedef struct run {
     pthread_mutex_t lock; /* of next, done, error, and of reading materials, which may open plugins */
 } run;
 
-/* Everything that one material must satisfy by itself. */
-static void check_alone(const run *r, uint64_t index, const mu_subject *subject, mu_tally *tally) {
+/* Everything that one material must satisfy by itself, seen from one side. */
+static void check_side(const run *r, uint64_t index, const mu_subject *subject, mu_tally *tally) {
     const mu_check_effort *effort = &r->settings->effort;
     mu_check_normalisation(subject, effort, tally);
     for (int k = 0; k < r->settings->views; k++) {
-        mu_stream random = mu_stream_make(r->settings->seed, index << 8 | (uint64_t)(16 + k));
+        mu_stream random =
+            mu_stream_make(r->settings->seed, index << 8 | (uint64_t)((subject->below ? 48 : 16) + k));
         double view[3];
         /* Fewer views take turns, so that each kind is seen. */
         mu_draw_view(index, r->settings->views < MU_VIEWS ? (int)((index + (uint64_t)k) % MU_VIEWS) : k,
                      &random, view);
         mu_check_visible(subject, effort, view, tally);
-        const mu_reflected reflected = mu_check_reflected(subject, effort, view, tally);
+        const mu_reflected scattered = mu_check_scattered(subject, effort, view, tally);
         static const double up[3] = {0, 0, 1};
         if (subject->sampler == MUSURF_SAMPLE_NDF || k == 0)
             mu_check_sampler(subject, effort, MUSURF_SAMPLE_NDF,
-                             subject->sampler == MUSURF_SAMPLE_NDF ? view : up, &reflected, &random, tally);
-        mu_check_sampler(subject, effort, MUSURF_SAMPLE_VISIBLE, view, &reflected, &random, tally);
+                             subject->sampler == MUSURF_SAMPLE_NDF ? view : up, &scattered, &random, tally);
+        mu_check_sampler(subject, effort, MUSURF_SAMPLE_VISIBLE, view, &scattered, &random, tally);
+        if (subject->sampler == MUSURF_SAMPLE_AS_SET)
+            mu_check_sampler(subject, effort, MUSURF_SAMPLE_AS_SET, view, &scattered, &random, tally);
         mu_check_points(subject, effort, view, &random, tally);
         mu_check_shading(subject, effort, view, &random, tally);
     }
+}
+
+static void check_alone(const run *r, uint64_t index, const mu_subject *subject, mu_tally *tally) {
+    check_side(r, index, subject, tally);
+    if (!(subject->eta > 0)) return;
+    mu_subject below = *subject;
+    below.below = 1, below.eta = 1 / subject->eta;
+    check_side(r, index, &below, tally);
 }
 
 /* What ties it to other materials. */
 static void check_relations(const run *r, uint64_t index, const mu_draw *draw, const mu_subject *subject,
                             const mu_subject *original, const mu_subject *turned, mu_tally *tally) {
     const mu_check_effort *effort = &r->settings->effort;
+    const double *m = draw->m, bc = m[1] * m[2];
+    const mu_deformation how = {.m = {m[0], m[1], m[2], m[3]},
+                                .tilt = {draw->tilt[0], draw->tilt[1]},
+                                .more = draw->found,
+                                .determinant = fma(m[0], m[3], -bc) + fma(-m[1], m[2], bc)};
     for (int k = 0; k < MU_VIEWS; k++) {
         mu_stream random = mu_stream_make(r->settings->seed, index << 8 | (uint64_t)(32 + k));
         double view[3];
         mu_draw_view(index, k, &random, view);
-        mu_check_transform(subject, original, draw->m, effort, view, &random, tally);
+        mu_check_transform(subject, original, &how, effort, view, &random, tally);
         mu_check_rotation(subject, turned, draw->angle, effort, view, &random, tally);
         if (draw->classic)
             mu_check_classic(subject, draw->alpha / draw->m[0], draw->alpha / draw->m[3], effort, view,
@@ -61,10 +78,15 @@ static void check_relations(const run *r, uint64_t index, const mu_draw *draw, c
 
 static _Bool parse(run *r, mu_check_material *material, const char *json, const mu_draw *draw,
                    const double *m) {
+    static const double level[2] = {0, 0};
     mu_error error = {.text = ""};
     pthread_mutex_lock(&r->lock);
     _Bool good = mu_check_material_parse(material, r->plugins, json, r->settings->precision, &error);
-    if (good && m && !mu_plane_from_transform(&material->subject.plane, m, draw->alpha, draw->spread)) {
+    mu_plane *plane = &material->subject.plane;
+    if (good && m &&
+        !(draw->found ? mu_subject_find_plane(&material->subject)
+                      : mu_plane_from_transform(plane, m, m == draw->m ? draw->tilt : level, draw->alpha,
+                                                draw->spread))) {
         mu_check_material_free(material);
         good = mu_fail(&error, "%s: no coordinates for this transform", json);
     }

@@ -16,12 +16,34 @@ double mu_subject_accuracy(const mu_subject *subject) {
     return subject->precision == MUSURF_FLOAT ? 4e-4 : 4e-12;
 }
 
+static const double *turned(const mu_subject *subject, const double *w, double out[3]) {
+    for (int c = 0; w && c < 3; c++) out[c] = subject->below ? -w[c] : w[c];
+    return w ? out : NULL;
+}
+
+musurf_result mu_subject_evaluate(const mu_subject *subject, const double wo[3], const double *wm,
+                                  const double *wi, musurf_probe_values *out) {
+    double o[3], m[3], i[3];
+    memset(out, 0, sizeof *out);
+    return subject->probe->evaluate(subject->material, subject->precision, turned(subject, wo, o),
+                                    turned(subject, wm, m), turned(subject, wi, i), out);
+}
+
+musurf_result mu_subject_sample(const mu_subject *subject, musurf_sampler sampler, const double wo[3],
+                                const double u[3], musurf_probe_sample *out) {
+    double o[3];
+    memset(out, 0, sizeof *out);
+    const musurf_result result = subject->probe->sample(subject->material, subject->precision, sampler,
+                                                        turned(subject, wo, o), u, out);
+    turned(subject, out->wi, out->wi);
+    turned(subject, out->wm, out->wm);
+    return result;
+}
+
 mu_answer mu_subject_ask(const mu_subject *subject, const double wo[3], const double *wm, const double *wi) {
     musurf_probe_values v;
     mu_answer answer = {.ok = 0};
-    memset(&v, 0, sizeof v);
-    if (subject->probe->evaluate(subject->material, subject->precision, wo, wm, wi, &v) != MUSURF_OK)
-        return answer;
+    if (mu_subject_evaluate(subject, wo, wm, wi, &v) != MUSURF_OK) return answer;
     const double value[MU_AT_COUNT] = {
         [MU_AT_SIGMA] = v.sigma, [MU_AT_D] = v.D,   [MU_AT_G1] = v.G1,  [MU_AT_DV] = v.Dv,
         [MU_AT_F] = v.f[1],      [MU_AT_G2] = v.G2, [MU_AT_PDF] = v.pdf};
@@ -33,6 +55,14 @@ mu_answer mu_subject_ask(const mu_subject *subject, const double wo[3], const do
     return answer;
 }
 
+double mu_subject_blur(const mu_subject *subject, const double view[3], _Bool refracted) {
+    const double shortest = refracted ? fmin(view[2], fabs(subject->eta - 1)) : view[2];
+    /* the z of wo + eta wi is a difference, which a steep normal has little of */
+    const double steep = refracted ? fmax(1, subject->plane.narrowest * subject->plane.condition) : 1;
+    return 16 * mu_subject_epsilon(subject) *
+           (subject->plane.condition + steep / (shortest * fmin(1, subject->plane.narrowest)));
+}
+
 static double signed_four(mu_stream *random) {
     return mu_stream_below(random, 2) ? 4 : -4;
 }
@@ -40,6 +70,12 @@ static double signed_four(mu_stream *random) {
 static void normalise(double w[3]) {
     const double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     for (int c = 0; c < 3; c++) w[c] /= length;
+}
+
+/* Refraction meets eta, rounded, and cosines that are sums: every component moves as if it were 1. */
+static void perturb_all(mu_stream *random, double epsilon, const double w[3], double out[3]) {
+    for (int c = 0; c < 3; c++) out[c] = w[c] + signed_four(random) * epsilon;
+    normalise(out);
 }
 
 static void perturb(mu_stream *random, double epsilon, const double w[3], double out[3]) {
@@ -73,21 +109,24 @@ mu_answer mu_subject_ask_rounded(const mu_subject *subject, double epsilon, cons
     mu_answer answer = mu_subject_ask(subject, wo, wm, wi);
     mu_stream random = mu_stream_make(0x736c61636bu, 0); /* the same signs each time */
     double still[3] = {0}, density = 0;
-    if (wi) {
+    const _Bool transmitted = wi && wo[2] * wi[2] < 0;
+    if (wi && !transmitted) {
         perturb_half(&random, 0, wo, wi, still);
         density = mu_subject_ask(subject, wo, still, NULL).value[MU_AT_D];
     }
     for (int trial = 0; answer.ok && trial < 8; trial++) {
         double o[3], m[3], h[3], i[3];
-        perturb(&random, epsilon, wo, o);
+        (transmitted ? perturb_all : perturb)(&random, epsilon, wo, o);
         if (wm) perturb(&random, epsilon, wm, m);
-        if (wi) {
+        if (transmitted) {
+            perturb_all(&random, epsilon, wi, i);
+        } else if (wi) {
             perturb_half(&random, epsilon, o, wi, h);
             reflect(o, h, i);
         }
         const mu_answer moved = mu_subject_ask(subject, o, wm ? m : NULL, wi ? i : NULL);
         for (int k = 0; k < MU_AT_COUNT; k++) widen(&answer, k, moved.value[k]);
-        if (!wi) continue;
+        if (!wi || transmitted) continue;
         /* Reflected about h, wi moves too, and what its cosine does to f may hide what h does to D: D alone.
          */
         const double ratio = mu_subject_ask(subject, wo, h, NULL).value[MU_AT_D] / density;
@@ -104,20 +143,19 @@ _Bool mu_subject_find_sampler(mu_subject *subject) {
     for (int n = 0; n < 32; n++) {
         double u[3];
         for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
-        if (n == 0) u[2] = 0; /* what a mixture spends on uniform directions, however small its share */
+        if (n & 1) u[2] = 0; /* the rarest of alternatives: what a mixture seldom draws */
         musurf_probe_sample s[3];
-        memset(s, 0, sizeof s);
         for (int kind = 0; kind < 3; kind++)
-            if (subject->probe->sample(subject->material, subject->precision, (musurf_sampler)kind, wo, u,
-                                       &s[kind]) != MUSURF_OK)
-                return 0;
+            if (mu_subject_sample(subject, (musurf_sampler)kind, wo, u, &s[kind]) != MUSURF_OK) return 0;
         for (int c = 0; c < 3; c++) {
             visible = visible && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_VISIBLE].wm[c];
             ndf = ndf && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_NDF].wm[c];
         }
     }
-    subject->sampler = visible ? MUSURF_SAMPLE_VISIBLE : MUSURF_SAMPLE_NDF;
-    return visible != ndf;
+    subject->sampler = visible == ndf ? MUSURF_SAMPLE_AS_SET
+                       : visible      ? MUSURF_SAMPLE_VISIBLE
+                                      : MUSURF_SAMPLE_NDF;
+    return 1;
 }
 
 _Bool mu_subject_find_plane(mu_subject *subject) {
@@ -130,10 +168,7 @@ _Bool mu_subject_find_plane(mu_subject *subject) {
         double u[3];
         for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
         musurf_probe_sample s;
-        memset(&s, 0, sizeof s);
-        if (subject->probe->sample(subject->material, subject->precision, MUSURF_SAMPLE_NDF, wo, u, &s) !=
-            MUSURF_OK)
-            return 0;
+        if (mu_subject_sample(subject, MUSURF_SAMPLE_NDF, wo, u, &s) != MUSURF_OK) return 0;
         if (!(s.wm[2] > 0)) continue;
         slopes[2 * count] = -s.wm[0] / s.wm[2];
         slopes[2 * count++ + 1] = -s.wm[1] / s.wm[2];

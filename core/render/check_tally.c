@@ -31,17 +31,18 @@ void mu_tally_init(mu_tally *tally) {
         if (mu_law_is_statistical(law)) tally->row[law].worst = 2; /* above every p */
 }
 
-static void print_direction(FILE *out, const char *name, const double *w) {
-    if (w) fprintf(out, ", \"%s\": [%.17g, %.17g, %.17g]", name, w[0], w[1], w[2]);
+static void print_direction(FILE *out, const mu_subject *subject, const char *name, const double *w) {
+    const double side = subject->below ? -1 : 1;
+    if (w) fprintf(out, ", \"%s\": [%.17g, %.17g, %.17g]", name, side * w[0], side * w[1], side * w[2]);
 }
 
 static void describe(char text[], size_t size, mu_case at) {
     FILE *out = fmemopen(text, size, "w");
     if (!out) return;
     fprintf(out, "{\"material\": %s", at.subject->json);
-    print_direction(out, "wo", at.wo);
-    print_direction(out, "wm", at.wm);
-    print_direction(out, "wi", at.wi);
+    print_direction(out, at.subject, "wo", at.wo);
+    print_direction(out, at.subject, "wm", at.wm);
+    print_direction(out, at.subject, "wi", at.wi);
     fputc('}', out);
     fclose(out);
 }

@@ -16,27 +16,32 @@
  * (E). */
 #define MU_LAWS(X)                                                                                           \
     X(NORMALISATION, "Eq. (3)   integral of D cos = 1", E)                                                   \
-    X(MASKING, "Eq. (2)   integral of D G1 (v.m)+ = v.n", E)                                                 \
+    X(MASKING, "Eq. (2)   integral of D G1 (v.m)+ = v.n, or sigma", E)                                       \
     X(PROJECTED_AREA, "sigma     = integral of D (v.m)+", E)                                                 \
     X(VISIBLE_NORMALS, "Dv        integral = 1", E)                                                          \
     X(HIDDEN_NORMALS, "G1, Dv    = 0 behind the view", E)                                                    \
     X(VISIBLE_SAMPLER, "chi^2     visible normals", P)                                                       \
     X(NDF_SAMPLER, "chi^2     D cos", P)                                                                     \
+    X(OWN_SAMPLER, "chi^2     directions, where a choice is made", P)                                        \
+    X(REFRACTED_SAMPLER, "chi^2     refracted directions", P)                                                \
     X(SHADING_SAMPLER, "chi^2     sampler of the shading calls", P)                                          \
     X(REJECTION, "integral of pdf + P(rejected) = 1", P)                                                     \
     X(ALBEDO, "mean weight = integral of f cos", P)                                                          \
     X(FURNACE, "integral of f cos <= 1", E)                                                                  \
     X(WEIGHT, "weight pdf = f cos", E)                                                                       \
-    X(WEIGHT_BOUND, "weight <= 1 (visible normals)", E)                                                      \
+    X(WEIGHT_BOUND, "weight <= 1 (visible normals; eta^2 weight)", E)                                        \
     X(SAMPLE_PDF, "pdf of sample = pdf of eval", E)                                                          \
-    X(NORMAL_PDF, "pdf = density of wm / (4 wo.wm)", E)                                                      \
-    X(VISIBLE_DENSITY, "Dv = G1 (wo.wm) D / wo.n", E)                                                        \
+    X(NORMAL_PDF, "pdf = density of wm, by reflection or refraction", E)                                     \
+    X(VISIBLE_DENSITY, "Dv = (wo.wm) D / sigma, G1 = min(1, wo.n / sigma)", E)                               \
     X(BRDF, "f = F D G2 / (4 cos cos)", E)                                                                   \
-    X(HEIGHT_CORRELATION, "G2 = 1 / (1 + Lambda_o + Lambda_i)", E)                                           \
+    X(BTDF, "f = (1-F) D G2 (o.m)(i.m) / (cos cos |H|^2)", E)                                                \
+    X(SNELL, "wm refracts wo into wi", E)                                                                    \
+    X(SHADOWING_FORM, "G2 by Lambda_o, Lambda_i: its form", E)                                               \
     X(RANGE, "G1, G2 <= 1, G2 <= min G1; finite, >= 0", E)                                                   \
-    X(RECIPROCITY, "f(wo,wi) = f(wi,wo)", E)                                                                 \
-    X(SLOPES_COVARIANT, "Eq. (22)  P22_M(p) = |det M| P22(M^T p)", E)                                        \
+    X(RECIPROCITY, "f(wo,wi) / n_o^2 = f(wi,wo) / n_i^2", E)                                                 \
+    X(SLOPES_COVARIANT, "Eq. (22)  P22_M(p) = |det M| P22(M^T p - tilt)", E)                                 \
     X(MASKING_INVARIANT, "Eq. (12)  G1_M(v) = G1(M^-1 v)", E)                                                \
+    X(SHADOWING_INVARIANT, "G2_M(v,l) = G2(M^-1 v, M^-1 l)", E)                                              \
     X(ROTATION, "M, v, l, m rotated together", E)                                                            \
     X(CLASSIC, "ggx, diagonal M = classic alpha_x, alpha_y", E)                                              \
     X(SHADING_EVAL, "shading calls: f, pdf = probe", E)                                                      \

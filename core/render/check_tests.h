@@ -21,10 +21,10 @@ typedef struct mu_check_effort {
     size_t points;          /* compared pointwise per view */
 } mu_check_effort;
 
-/* What the reflected half of the sphere holds, by quadrature. */
+/* What the sphere of wi holds, by quadrature. Transmitted f counts as importance, eta^2 f, which is conserved. */
 typedef struct mu_reflected {
-    double pdf;    /* integral of pdf over wi.z > 0 */
-    double albedo; /* integral of f cos */
+    double pdf;    /* integral of pdf */
+    double albedo; /* integral of f |cos| */
     double square; /* integral of (f cos)^2 / pdf: the second moment of the weight */
     double error;  /* of pdf and albedo, quadrature and rounding */
     _Bool resolved;
@@ -35,13 +35,13 @@ void mu_check_normalisation(const mu_subject *subject, const mu_check_effort *ef
 /* Eq. (2), sigma, Dv. */
 void mu_check_visible(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
                       mu_tally *tally);
-mu_reflected mu_check_reflected(const mu_subject *subject, const mu_check_effort *effort,
+mu_reflected mu_check_scattered(const mu_subject *subject, const mu_check_effort *effort,
                                 const double view[3], mu_tally *tally);
 
-/* chi^2 of one sampler; of the material's own sampler also its rejections and weights, and its shading calls.
- */
+/* chi^2 of one sampler's normals; of the material's own sampler also its directions, rejections and weights, and its
+ * shading calls. AS_SET is for mixtures, whose normals have no density of their own. */
 void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, musurf_sampler sampler,
-                      const double view[3], const mu_reflected *reflected, mu_stream *random,
+                      const double view[3], const mu_reflected *scattered, mu_stream *random,
                       mu_tally *tally);
 
 /* Identities between the quantities at sampled directions. */
@@ -52,8 +52,14 @@ void mu_check_points(const mu_subject *subject, const mu_check_effort *effort, c
 void mu_check_shading(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
                       mu_stream *random, mu_tally *tally);
 
-/* A material and its original: the same microsurface before M (rows) was applied. */
-void mu_check_transform(const mu_subject *subject, const mu_subject *original, const double m[4],
+/* How a material was made from its original: the position map (x, y, z) -> (M (x, y), z + tilt.(x, y)). */
+typedef struct mu_deformation {
+    double m[4]; /* rows */
+    double tilt[2];
+    double determinant; /* of M, signed */
+    _Bool more;         /* the original is not isotropic itself: what its azimuths are, it alone knows */
+} mu_deformation;
+void mu_check_transform(const mu_subject *subject, const mu_subject *original, const mu_deformation *how,
                         const mu_check_effort *effort, const double view[3], mu_stream *random,
                         mu_tally *tally);
 /* `turned` is the subject with M turned by `angle` about the normal. */

@@ -114,7 +114,7 @@ static void complete(check_options *o) {
     if (!o->samples_given) s->effort.samples = o->quick ? 10000 : 20000;
     s->effort.shading_samples = 5 * s->effort.samples;
     s->effort.target = o->quick ? 1e-7 : 1e-8;
-    s->effort.panels = 1500;
+    s->effort.panels = o->quick ? 500 : 1500;
     s->effort.cells = o->quick ? 200 : 400;
     s->effort.points = o->quick ? 8 : 16;
     s->views = o->quick ? 1 : 2;

@@ -29,6 +29,8 @@ typedef struct mu_walk {
     mu_arrival arrival;
     mu_cone cone; /* around the ray, where footprints are asked for */
     float throughput[3];
+    float
+        compressed; /* what refraction did to radiance on the way: the product of 1/eta^2, 1 outside again */
     mu_random random;
     uint32_t event;
     mu_radiance *out;
@@ -123,17 +125,18 @@ static _Bool scatter(const mu_tracer *tracer, const mu_shading *shading, mu_walk
     const mu_vec3 wi = mu_to_world(&shading->frame, mu_v3(sample.wi[0], sample.wi[1], sample.wi[2]));
     if (!mu_shading_agrees(shading, wi, sample.wi[2])) return 0;
     for (int c = 0; c < 3; c++) walk->throughput[c] *= sample.weight[c];
+    walk->compressed /= sample.eta * sample.eta;
     walk->arrival = (mu_arrival){shading->hit->p, sample.pdf, (sample.lobe & MUSURF_DELTA_LOBES) != 0};
     walk->ray = mu_geometry_leave(shading->hit, mu_normalise(wi), INFINITY);
     if (tracer->footprints) walk->cone.spread += 2 * sample.roughness;
     return 1;
 }
 
-/* Goes on with the probability of the throughput's largest part, which is at most 1 where no energy is made.
- */
-static _Bool survives(mu_random *random, float throughput[3]) {
+/* Goes on with the probability of the throughput's largest part, which is at most 1 where no energy is made. Inside of
+ * glass throughput is smaller by eta^2, which leaving gives back: no reason to end there. */
+static _Bool survives(mu_random *random, float throughput[3], float compressed) {
     const float most = fmaxf(throughput[0], fmaxf(throughput[1], throughput[2]));
-    const float chance = fminf(most, 1);
+    const float chance = fminf(most / compressed, 1);
     if (!(mu_random_one(random) < chance)) return 0;
     for (int c = 0; c < 3; c++) throughput[c] /= chance;
     return 1;
@@ -194,7 +197,9 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
     if (event + 1 == scene->integrator.depth && !mu_lights_met(tracer->lights)) return 0;
     walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
     if (!scatter(tracer, &shading, walk)) return 0;
-    if (event + 1 >= scene->integrator.roulette && !survives(&walk->random, walk->throughput)) return 0;
+    if (event + 1 >= scene->integrator.roulette &&
+        !survives(&walk->random, walk->throughput, walk->compressed))
+        return 0;
     walk->out->rays++;
     return 1;
 }
@@ -214,7 +219,8 @@ static void follow(const mu_tracer *tracer, const mu_path_options *options, mu_w
 static mu_walk start(const mu_tracer *tracer, const mu_path_options *options, uint64_t seed, uint32_t x,
                      uint32_t y, uint32_t sample, mu_radiance *out) {
     *out = (mu_radiance){.rays = 1};
-    mu_walk walk = {.random = mu_random_start(seed, x, y, sample), .throughput = {1, 1, 1}, .out = out};
+    mu_walk walk = {
+        .random = mu_random_start(seed, x, y, sample), .throughput = {1, 1, 1}, .compressed = 1, .out = out};
     walk.random.independent = options->independent;
     float u[2];
     mu_random_pair(&walk.random, u);

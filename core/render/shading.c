@@ -4,6 +4,8 @@
  */
 #include "core/render/shading.h"
 
+enum { TRANSMISSION = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION | MUSURF_DIFFUSE_TRANSMISSION };
+
 /* n and a tangent as near to t as can be. */
 static mu_frame frame_about(mu_vec3 n, mu_vec3 t) {
     t = mu_normalise(mu_sub(t, mu_scale(n, mu_dot(n, t))));
@@ -42,7 +44,9 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
     shading->type = material->type;
     shading->closure = closure;
     _Bool front = mu_dot(wo, hit->ng) > 0;
-    if (!front && scene->objects[hit->object].two_sided) {
+    /* what transmits has an inside: turned over, light would enter the glass where it leaves it */
+    const _Bool opaque = !(material->plan.lobes & TRANSMISSION);
+    if (!front && opaque && scene->objects[hit->object].two_sided) {
         shading->ng = mu_scale(shading->ng, -1);
         shading->frame.n = mu_scale(shading->frame.n, -1);
         shading->frame.b = mu_scale(shading->frame.b, -1);

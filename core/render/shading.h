@@ -4,7 +4,8 @@
  * shading.h: a hit made ready for its material: which side is up, the local frame, the closure.
  *
  * Conventions. The geometric normal decides which side is seen. A two-sided surface seen from behind turns
- * its frame over about the tangent (n and b change sign). Where an interpolated normal faces away from a
+ * its frame over about the tangent (n and b change sign), unless its material transmits: then behind is inside, which
+ * the material sees by the sign of wo.z. Where an interpolated normal faces away from a
  * viewer who sees the front, the geometric normal takes its place, so that silhouettes have no black rim. A
  * direction counts only if the shading frame and the geometric normal agree on its side: nothing leaks
  * through, nothing is lit from behind.

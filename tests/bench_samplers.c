@@ -20,9 +20,9 @@
 #include "core/bsdf/musurf.h"
 #include "tests/uniform.h"
 
-enum { DRAWS = 1 << 16, TIMED = 4096, ROUNDS = 5, SAMPLERS = 4 };
+enum { DRAWS = 1 << 16, TIMED = 4096, ROUNDS = 5, SAMPLERS = 5 };
 
-static const char *const names[] = {"visible", "ndf", "mixed", "visible_uniform", "bounded"};
+static const char *const names[] = {"visible", "ndf", "mixed", "visible_uniform", "bounded", "folded"};
 _Static_assert(sizeof names / sizeof names[0] == MU_SAMPLER_COUNT, "a name for each");
 
 typedef struct group {
@@ -42,32 +42,32 @@ static const group groups[] = {
      {2},
      {STRETCH(0), STRETCH(0.5), {1, 1, 0, 1}, {-0.5, 0, 0, 0.5}},
      {0, 30, 60, 80, 87},
-     {MU_SAMPLE_VISIBLE, MU_SAMPLE_BOUNDED, MU_SAMPLE_NDF, MU_SAMPLE_MIXED},
-     4},
+     {MU_SAMPLE_VISIBLE, MU_SAMPLE_BOUNDED, MU_SAMPLE_NDF, MU_SAMPLE_MIXED, MU_SAMPLE_FOLDED},
+     5},
     {"gtr",
      MU_GTR,
      {0.3},
      {0.1, 1, 4},
      {STRETCH(0), STRETCH(0.25), STRETCH(0.5), STRETCH(0.75)},
      {0, 30, 60, 75, 85},
-     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE, MU_SAMPLE_VISIBLE_UNIFORM},
-     4},
+     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE, MU_SAMPLE_VISIBLE_UNIFORM, MU_SAMPLE_FOLDED},
+     5},
     {"beckmann",
      MU_BECKMANN,
      {0.1, 0.3},
      {2},
      {STRETCH(0), STRETCH(0.5)},
      {0, 30, 60, 75, 85},
-     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE},
-     3},
+     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE, MU_SAMPLE_FOLDED},
+     4},
     {"std",
      MU_STD,
      {0.3},
      {1.7, 4},
      {STRETCH(0), STRETCH(0.5)},
      {0, 30, 60, 75, 85},
-     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE},
-     3},
+     {MU_SAMPLE_MIXED, MU_SAMPLE_NDF, MU_SAMPLE_VISIBLE, MU_SAMPLE_FOLDED},
+     4},
 };
 
 typedef struct row {

@@ -39,6 +39,10 @@ static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
         *pdf = (1 - share) * *pdf + uniform;
         *reverse = (1 - share) * *reverse + uniform;
     }
+    if (plan == PLAN_FULL && sampler == MU_SAMPLE_FOLDED) {
+        *pdf = smaller(*pdf + folded_density(plan, c, c->wo, i, c->sigma), saturated);
+        *reverse = smaller(*reverse + folded_density(plan, c, i, c->wo, sigma_i), saturated);
+    }
     return own;
 }
 

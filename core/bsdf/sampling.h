@@ -29,13 +29,39 @@ static inline int draw_normal(plan_kind plan, const closure *c, const real from[
     return 1;
 }
 
+/* A direction that no micronormal of its own has led to: all as eval has it. */
+static inline void foreign_sample(const closure *c, mu_sampler sampler, const real i[3], sample *out) {
+    value v;
+    real m[3], length2 = 0;
+    for (int k = 0; k < 3; k++) m[k] = c->wo[k] + i[k], length2 += m[k] * m[k];
+    reflection_eval(PLAN_FULL, c, sampler, i, &v);
+    if (!(v.pdf > 0)) return;
+    for (int k = 0; k < 3; k++) {
+        out->wi[k] = i[k], out->wm[k] = m[k] / sqrt(length2);
+        out->f[k] = v.f[k], out->weight[k] = smaller(v.f[k] * (i[2] / v.pdf), saturated);
+    }
+    out->pdf = v.pdf, out->pdf_reverse = v.pdf_reverse, out->rejected = 0;
+}
+
+/* A direction of the uniform hemisphere, for the samplers that mix it in. */
+static inline void uniform_sample(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
+    const real z = 1 - u[0], r = sqrt(u[0] * (2 - u[0])), phi = R(2 * PI) * u[1];
+    foreign_sample(c, sampler, (const real[3]){r * cos(phi), r * sin(phi), z}, out);
+}
+
 static inline void reflection_sample(plan_kind plan, const closure *c, mu_sampler sampler, const real m[3],
                                      real cosine, real d, const real F[3], sample *out) {
     real i[3];
     for (int k = 0; k < 3; k++) i[k] = 2 * cosine * m[k] - c->wo[k];
-    if (!(i[2] > 0)) return;
+    const int folds = plan == PLAN_FULL && sampler == MU_SAMPLE_FOLDED;
+    if (!(i[2] > 0) && !(folds && i[2] < 0)) return;
     const real unit = R(1) / sqrt(i[0] * i[0] + i[1] * i[1] + i[2] * i[2]);
     for (int k = 0; k < 3; k++) i[k] *= unit, out->wi[k] = plan == PLAN_FULL ? c->side * i[k] : i[k];
+    if (folds && i[2] < 0) {
+        i[2] = -i[2];
+        foreign_sample(c, sampler, i, out);
+        return;
+    }
 
     real sigma_i, lambda_i;
     view_of(plan, c, i, &sigma_i, &lambda_i);
@@ -49,7 +75,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     real weight = ratio; /* F G2 / G1 */
     if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
         weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
-    if (plan == PLAN_FULL && mixes(sampler)) /* its own density over that of the mixture */
+    if (folds || (plan == PLAN_FULL && mixes(sampler))) /* its own density over that of all ways */
         weight *= own / larger(out->pdf, REAL_MIN);
     if (plan == PLAN_FULL) {
         const real flakes = glint(plan, c, m, 1);
@@ -60,21 +86,6 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
         out->weight[k] = choice < 1 ? weight : F[k] * weight; /* F was the choice */
     }
     out->rejected = 0;
-}
-
-/* A direction of the uniform hemisphere, for the samplers that mix it in. */
-static inline void uniform_sample(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
-    const real z = 1 - u[0], r = sqrt(u[0] * (2 - u[0])), phi = R(2 * PI) * u[1];
-    const real i[3] = {r * cos(phi), r * sin(phi), z};
-    value v;
-    real m[3], length2 = 0;
-    for (int k = 0; k < 3; k++) m[k] = c->wo[k] + i[k], length2 += m[k] * m[k];
-    reflection_eval(PLAN_FULL, c, sampler, i, &v);
-    for (int k = 0; k < 3; k++) {
-        out->wi[k] = i[k], out->wm[k] = m[k] / sqrt(length2);
-        out->f[k] = v.f[k], out->weight[k] = smaller(v.f[k] * (i[2] / v.pdf), saturated);
-    }
-    out->pdf = v.pdf, out->pdf_reverse = v.pdf_reverse, out->rejected = 0;
 }
 
 static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sampler, const real u[3],

@@ -59,6 +59,7 @@ static inline void fresnel_of(const closure *c, real cosine, real F[3]) {
 }
 
 #include "core/bsdf/bounded.h"
+#include "core/bsdf/folded.h"
 #include "core/bsdf/reflection.h"
 #include "core/bsdf/refraction.h"
 #include "core/bsdf/sampling.h"

@@ -5,7 +5,7 @@ import json
 import math
 import subprocess
 
-ORDER = ("ndf", "mixed", "visible", "visible_uniform", "bounded")
+ORDER = ("ndf", "mixed", "visible", "visible_uniform", "bounded", "folded")
 
 
 def run(build):

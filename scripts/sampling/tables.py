@@ -58,7 +58,7 @@ def settings(result):
 
 def fragment(result, folder):
     effort = result["effort"]
-    names = ("ndf", "mixed", "visible", "visible_uniform")
+    names = ("ndf", "mixed", "visible", "visible_uniform", "folded")
     parts = [
         "<h2>Masking and sampling against the paper's own</h2>", "".join(f"<p>{html.escape(line)}.</p>" for line in summary(result)),
         f"<p><code>{html.escape(result['command'])}</code> · {result['seconds']:.0f} s</p>", picture(folder, "figure9.png"),

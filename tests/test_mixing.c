@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * test_mixing.c: the samplers that musurf check does not know: bounded visible normals, and the two that mix in uniform
- * directions. Reflected directions against the pdf that eval states, by chi² over the hemisphere, what is lost below the
- * horizon being one cell more; and their weights against those of visible normals.
+ * test_mixing.c: bounded visible normals, and the two samplers that mix in uniform directions, in float and double.
+ *
+ * Reflected directions against the pdf that eval states, by chi² over the hemisphere, what is lost below the horizon being
+ * one cell more; and their weights against those of visible normals.
  *
  * Cells are 8 x 16 in cos and azimuth, the pdf integrated over each by 24 x 24 midpoints. The distributions are wide
  * (alpha >= 0.3 after M): the rule's error, measured by halving its step, stays below 2e-5 of the whole, a hundredth of

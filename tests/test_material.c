@@ -186,13 +186,16 @@ static void test_the_table_keeps_its_word(void **state) {
             type->release(material);
             for (const char *const *c = p->choices; p->kind == MUSURF_CHOICE && *c; c++) {
                 static const double grid[7] = {1, 1, -1, 1, -1, 1, 1};
-                const musurf_param *const histogram = mu_type_find(type, "histogram");
+                const musurf_param *const histogram = mu_type_find(type, "histogram"),
+                                   *const ndf = mu_type_find(type, "ndf");
                 setting.text = *c;
-                musurf_setting both[2] = {setting, setting}; /* a histogram has no default */
-                const size_t count = strcmp(*c, "tabulated") == 0 && histogram ? 2 : 1;
-                if (count == 2)
-                    both[1] = (musurf_setting){
+                musurf_setting both[2] = {setting, setting}; /* what a choice cannot be without */
+                size_t count = 1;
+                if (strcmp(*c, "tabulated") == 0 && histogram)
+                    both[count++] = (musurf_setting){
                         .size = sizeof setting, .param = histogram->id, .values = grid, .count = 7};
+                if (strcmp(*c, "spline") == 0 && ndf)
+                    both[count++] = (musurf_setting){.size = sizeof setting, .param = ndf->id, .text = "gtr"};
                 if (type->compile(&host, both, count, &material) != MUSURF_OK)
                     fail_msg("%s of %s", *c, p->name);
                 type->release(material);

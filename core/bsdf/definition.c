@@ -134,7 +134,7 @@ static int check_choices(const mu_definition *d, mu_complaint *why) {
 
 /* The squared tilt, in units of the slope roughness, is a number. */
 static int check_tilt(const mu_definition *d, mu_complaint *why) {
-    double unit = d->ndf == MU_GTR     ? d->alpha / sqrt(fmax(1, d->gamma))
+    double unit = d->ndf == MU_GTR     ? (d->gamma < 1 ? 1 : d->alpha / sqrt(d->gamma))
                   : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
                   : d->ndf == MU_SHEEN ? 1
                                        : d->alpha;

@@ -23,7 +23,7 @@ struct musurf_material {
     uint32_t transmits;
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
-    char name[64];
+    char name[96]; /* the longest: "beckmann (std is beckmann here), general transform, double precision" */
     char left_out[160];
 };
 

@@ -165,9 +165,9 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, m) : parse_anisotropy(g, d, m);
     if (result != MUSURF_OK) return result;
 
-    const double s = musurf_number(g, STRETCH);
-    const double stretch[2] = {s < 0 ? 1 + s : 1 / (1 - s), s < 0 ? 1 / (1 + s) : 1 - s}; /* Eq. (31) */
-    for (int i = 0; i < 4; i++) out->inner[i] = stretch[i / 2] * m[i];
+    double stretch[4];
+    (void)mu_transform_stretch(musurf_number(g, STRETCH), 0, stretch); /* Eq. (31); singular: M is refused */
+    multiply(stretch, m, out->inner);
     const musurf_setting *set = g->by_id[TRANSFORM];
     out->varying = set && COVERS(set, source) && set->source == MUSURF_SLOT;
     if (out->varying) {

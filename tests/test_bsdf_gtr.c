@@ -95,9 +95,27 @@ static void float_table_is_right(void **state) {
     assert_true(worst < 1e-6);
 }
 
+/* Also where alpha² underflows, and c = P22 x² far out is a product of 0 and infinity if it is taken apart. */
+static void lambda_is_finite_for_the_least_alpha(void **state) {
+    (void)state;
+    static const double least[] = {1e-150, 1e-160, 1e-300, 5e-324}, gammas[] = {0, 1e-9, 0.5};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 3; j++) {
+            const double w[3] = {1e-20, 0, 1};
+            const mu_definition d = bsdf_definition(MU_GTR, least[i], gammas[j], 1, 0, 0, 1);
+            bsdf b;
+            bsdf_bind_double(&b, &d, w);
+            const double near = mu_view_d(&b.d, w).Lambda;
+            assert_true(near >= 0 && near < 1e-40);
+            /* c = (1 - gamma) (1 - a) / (1 - a^(1 - gamma)), in which a^(1 - gamma) is nothing here */
+            if (least[i] < 1e-155) bsdf_near(near, (1 - gammas[j]) * 1e-40 / 4, 1e-14);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lambda_equals_the_closed_forms),
                                        cmocka_unit_test(lambda_and_d_are_continuous_in_gamma),
-                                       cmocka_unit_test(float_table_is_right)};
+                                       cmocka_unit_test(float_table_is_right),
+                                       cmocka_unit_test(lambda_is_finite_for_the_least_alpha)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

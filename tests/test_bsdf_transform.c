@@ -221,6 +221,77 @@ static void refuses_singular_maps(void **state) {
     }
 }
 
+/* An ellipsoid of little roughness along one axis keeps its digits whichever row of A that is: |det M| = |A n|³ / |det A|, and
+ * M M^T and the tilt, -M^T b, do not feel the order of the rows. */
+static void ellipsoid_keeps_the_digits_of_the_small_one(void **state) {
+    (void)state;
+    static const double thetas[][3] = {{0.3, -0.7, 0.5}, {-1.1, 0.2, 2}, {0, 0.9, -0.4}, {0.6, 0, 0}};
+    static const int orders[][3] = {{0, 1, 2}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}};
+    for (int i = 0; i < 4; i++)
+        for (double small = 1; small > 1e-13; small /= 10) {
+            const double alpha[2] = {0.5, small};
+            double A[9], first[5];
+            mu_ellipsoid_matrix(alpha, thetas[i], A);
+            const double seen = hypot(hypot(A[2], A[5]), A[8]);
+            for (int order = 0; order < 6; order++) {
+                double B[9], m[4], tilt[2];
+                for (int k = 0; k < 9; k++) B[k] = A[3 * orders[order][k / 3] + k % 3];
+                assert_true(mu_ellipsoid(B, m, tilt));
+                bsdf_near(fabs(m[0] * m[3] - m[1] * m[2]), seen * seen * seen / (0.5 * small), 1e-13);
+                const double got[5] = {m[0] * m[0] + m[1] * m[1], m[0] * m[2] + m[1] * m[3],
+                                       m[2] * m[2] + m[3] * m[3], fabs(tilt[0]), fabs(tilt[1])};
+                for (int k = 0; k < 5; k++) {
+                    if (order == 0) first[k] = got[k];
+                    const double most = fmax(first[0], first[2]), scale = k < 3 ? most : fmax(1, sqrt(most));
+                    assert_true(fabs(got[k] - first[k]) <= 1e-12 * scale);
+                }
+            }
+        }
+}
+
+/* What the library would take for an index, and tilts whose square in units of the roughness is no number. */
+static void refuses_what_is_no_surface(void **state) {
+    (void)state;
+    static const char *const fields[] = {"ndf", "ndf", "sampler", "masking", "smith", "multiple", "fresnel"};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+        mu_complaint why;
+        mu_definition d = mu_definition_default();
+        if (i == 0) d.ndf = MU_NDF_COUNT;
+        if (i == 1) d.ndf = (mu_ndf)-1;
+        if (i == 2) d.sampler = MU_SAMPLER_COUNT;
+        if (i == 3) d.masking = MU_MASKING_COUNT;
+        if (i == 4) d.smith = MU_SMITH_COUNT;
+        if (i == 5) d.multiple = MU_SCATTERING_COUNT;
+        if (i == 6) d.fresnel = (mu_fresnel_kind)(MU_FRESNEL_CONDUCTOR + 1);
+        assert_false(mu_definition_check(&d, &why));
+        assert_string_equal(why.field, fields[i]);
+    }
+    static const mu_ndf ndfs[] = {MU_GGX, MU_BECKMANN, MU_GTR, MU_STD};
+    for (size_t i = 0; i < sizeof ndfs / sizeof ndfs[0]; i++) {
+        static const double alphas[] = {0, 5e-324, 1e-200, 1e-130};
+        for (int k = 0; k < 4; k++) {
+            mu_complaint why;
+            mu_definition d = bsdf_definition(ndfs[i], alphas[k], 3, 1, 0, 0, 1);
+            d.tilt[0] = 0.5;
+            assert_int_equal(mu_definition_check(&d, &why), k == 0 || k == 3);
+        }
+    }
+}
+
+/* Lambda overflows where both directions all but lie on the horizon: G2 is 0 there, not 0 times infinity. */
+static void is_finite_at_the_horizon(void **state) {
+    (void)state;
+    for (int form = 0; form < MU_MASKING_COUNT; form++) {
+        mu_definition d = bsdf_definition(MU_GGX, 1e20, 2, 1, 0, 0, 1);
+        d.masking = (mu_masking_form)form;
+        const double w[3] = {1, 0, 1e-300};
+        bsdf b;
+        bsdf_bind_double(&b, &d, w);
+        const double G2 = mu_pair_d(&b.d, w).G2;
+        assert_true(G2 >= 0 && G2 <= 1e-100);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(equals_classic_anisotropy),
                                        cmocka_unit_test(isometry_moves_with_the_surface),
@@ -229,6 +300,9 @@ int main(void) {
                                        cmocka_unit_test(is_reciprocal),
                                        cmocka_unit_test(is_normalised),
                                        cmocka_unit_test(takes_every_scale),
-                                       cmocka_unit_test(refuses_singular_maps)};
+                                       cmocka_unit_test(refuses_singular_maps),
+                                       cmocka_unit_test(ellipsoid_keeps_the_digits_of_the_small_one),
+                                       cmocka_unit_test(refuses_what_is_no_surface),
+                                       cmocka_unit_test(is_finite_at_the_horizon)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -79,7 +79,9 @@ class Spline(unittest.TestCase):
 
     def test_refusals(self):
         for parameters, words in ((dict(ndf="gtr", gamma=4.1), "ends at 4"), (dict(ndf="ggx"), "gtr alone"),
-                                  (dict(ndf="gtr", gamma=1, sampler="visible"), "ndf or mixed")):
+                                  (dict(ndf="gtr", gamma=1, sampler="visible"), "ndf or mixed"),
+                                  (dict(ndf="gtr", gamma=1, multiple_scattering="random_walk"), "single scattering alone"),
+                                  (dict(ndf="gtr", gamma=1, transmission=True, fresnel={"dielectric": 1.5}), "reflection alone")):
             done = musurf("eval", stdin=[{"material": microfacet(smith="spline", **parameters), "wo": [0, 0, 1]}])
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.out)
@@ -104,6 +106,12 @@ class Spline(unittest.TestCase):
         law = {law["law"]: law["verdict"] for law in strict(done.out)["laws"]}
         self.assertEqual((law["MASKING"], law["SAMPLE_PDF"], law["REJECTION"]), ("FAILED", "ok", "ok"))
         self.assertEqual(self.check(microfacet(ndf="gtr", alpha=0.01, gamma=1.5, sampler="mixed")).returncode, 0)
+
+    def test_check_passes_over_what_scatters_several_times(self):
+        for how in ("compensated", "random_walk"):
+            done = self.check(microfacet(ndf="ggx", alpha=0.5, multiple_scattering=how))
+            self.assertIn("the laws are those of single scattering", done.err)
+            self.assertEqual(done.returncode, 0, done.out)
 
     def test_the_sampler_is_the_papers_own(self):
         """Unless it says ndf. `pdf` tells them apart."""

@@ -98,9 +98,7 @@ static int tilts_too_much(const mu_definition *d) {
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
     why->field = "multiple";
     const char *right = "";
-    if (d->multiple < MU_SINGLE || d->multiple >= MU_SCATTERING_COUNT) {
-        right = "is none of single, compensated and random walk";
-    } else if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
+    if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
         right = "a random walk needs height-correlated masking: that is the walk's own";
     } else if (d->multiple == MU_RANDOM_WALK &&
                (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN)) {
@@ -117,6 +115,46 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
     return !right[0];
 }
 
+/* Members that the library uses as indices. */
+static int check_choices(const mu_definition *d, mu_complaint *why) {
+    const struct {
+        const char *field;
+        int value, count;
+    } choices[] = {{"ndf", (int)d->ndf, d->ndf == MU_CUSTOM ? MU_CUSTOM + 1 : MU_NDF_COUNT},
+                   {"sampler", (int)d->sampler, MU_SAMPLER_COUNT},
+                   {"masking", (int)d->masking, MU_MASKING_COUNT},
+                   {"smith", (int)d->smith, MU_SMITH_COUNT},
+                   {"multiple", (int)d->multiple, MU_SCATTERING_COUNT},
+                   {"fresnel", (int)d->fresnel, MU_FRESNEL_CONDUCTOR + 1}};
+    for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++)
+        if (choices[i].value < 0 || choices[i].value >= choices[i].count)
+            return complain(why, choices[i].field, choices[i].value, "is none of its enumeration");
+    return 1;
+}
+
+/* The squared tilt, in units of the slope roughness, is a number. */
+static int check_tilt(const mu_definition *d, mu_complaint *why) {
+    double unit = d->ndf == MU_GTR     ? (d->gamma < 1 ? 1 : d->alpha / sqrt(d->gamma))
+                  : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
+                  : d->ndf == MU_SHEEN ? 1
+                                       : d->alpha;
+    if (d->ndf == MU_TABULATED) {
+        double mean[2], covariance[3];
+        mu_tabulated_moments(d, mean, covariance);
+        unit = mu_tabulated_spread(covariance);
+    }
+    const int has_unit = d->ndf == MU_PHONG || d->ndf == MU_TABULATED ||
+                         (d->alpha > 0 && d->ndf != MU_FLAT && d->ndf != MU_CUSTOM);
+    for (int i = 0; i < 2; i++) {
+        if (!(fabs(d->tilt[i]) <= DBL_MAX))
+            return complain(why, "tilt", d->tilt[i], "a mean slope is finite");
+        if (has_unit && fabs(d->tilt[i]) > 1e140 * unit)
+            return complain(why, "tilt", d->tilt[i],
+                            "a mean slope is at most 1e140 times the slope roughness, or 0");
+    }
+    return 1;
+}
+
 /* Appendix A is of GTR, between its integers. Its masking does not normalise the visible normals that it would draw. */
 static int check_smith(const mu_definition *d, mu_complaint *why) {
     if (d->smith != MU_SMITH_SPLINE) return 1;
@@ -124,9 +162,10 @@ static int check_smith(const mu_definition *d, mu_complaint *why) {
         return complain(why, "gamma", d->gamma,
                         "the spline of Appendix A ends at 4, where smith must be exact");
     const int samples = d->sampler == MU_SAMPLE_NDF || d->sampler == MU_SAMPLE_MIXED;
-    if (d->ndf == MU_GTR && d->multiple == MU_SINGLE && samples) return 1;
+    if (d->ndf == MU_GTR && d->multiple == MU_SINGLE && samples && !d->transmission) return 1;
     return refuse(why, "smith",
                   d->multiple != MU_SINGLE ? "spline knows single scattering alone"
+                  : d->transmission        ? "spline knows reflection alone"
                   : d->ndf != MU_GTR
                       ? "spline approximates gtr alone: the masking of this distribution is exact"
                       : "spline needs the sampler ndf or mixed: visible normals are those of exact masking");
@@ -143,6 +182,7 @@ static int check_sampler(const mu_definition *d, mu_complaint *why) {
 }
 
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
+    if (!check_choices(d, why)) return 0;
     if (d->ndf == MU_TABULATED && !check_histogram(d, why)) return 0;
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
         return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
@@ -167,9 +207,7 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         if (!(d->flake_cone > 0 && d->flake_cone <= PI / 2))
             return complain(why, "flake_cone", d->flake_cone, "an angle in (0, pi/2]");
     }
-    for (int i = 0; i < 2; i++)
-        if (!(fabs(d->tilt[i]) <= DBL_MAX))
-            return complain(why, "tilt", d->tilt[i], "a mean slope is finite");
+    if (!check_tilt(d, why)) return 0;
     if (mu_transform_determinant(d->transform) == 0) {
         const double *m = d->transform;
         why->field = "transform";
@@ -179,8 +217,8 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
                  m[0], m[1], m[2], m[3]);
         return 0;
     }
-    return check_fresnel(d, why) && check_transmission(d, why) && check_multiple(d, why) &&
-           check_smith(d, why) && check_sampler(d, why);
+    return check_fresnel(d, why) && check_smith(d, why) && check_transmission(d, why) &&
+           check_multiple(d, why) && check_sampler(d, why);
 }
 
 #endif

@@ -11,6 +11,7 @@
  * place of Section 4.1: the same density (33), by other means.
  */
 #include "core/bsdf/real.h"
+#include "core/bsdf/singular.h"
 
 #if MU_REAL_BITS == 53
 
@@ -31,19 +32,22 @@ void mu_ellipsoid_matrix(const double alpha[2], const double theta[3], double A[
         A[i] = (i < 3 ? alpha[0] : i < 6 ? alpha[1] : 1) * R[i]; /* Eq. (2): A = S R */
 }
 
-/* Reflects all columns so that column `column` has nothing above row `row` (Householder, columns taken from the last);
- * row: the last row that it may still touch. */
-static void eliminate(double A[9], int row, int column) {
-    double v[3] = {0}, norm = 0;
-    for (int i = 0; i <= row; i++) v[i] = A[3 * i + column], norm = hypot(norm, v[i]);
-    if (norm == 0) return;
-    v[row] += copysign(norm, v[row]);
-    double v2 = 0;
-    for (int i = 0; i <= row; i++) v2 += v[i] * v[i];
+/* Reflects all columns so that the last is (0, 0, beta) (Householder). The row with the largest share of it is taken for the
+ * last: what the others take on is then of their own size, and a row of little roughness keeps its digits. */
+static void eliminate(double A[9]) {
+    int pivot = 2;
+    for (int i = 0; i < 2; i++) pivot = fabs(A[3 * i + 2]) > fabs(A[3 * pivot + 2]) ? i : pivot;
     for (int k = 0; k < 3; k++) {
-        double dot = 0;
-        for (int i = 0; i <= row; i++) dot += v[i] * A[3 * i + k];
-        for (int i = 0; i <= row; i++) A[3 * i + k] -= 2 * dot / v2 * v[i];
+        const double row = A[3 * pivot + k];
+        A[3 * pivot + k] = A[6 + k], A[6 + k] = row;
+    }
+    const double norm = hypot(hypot(A[2], A[5]), A[8]);
+    if (norm == 0) return;
+    const double v[3] = {A[2], A[5], A[8] + copysign(norm, A[8])},
+                 v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    for (int k = 0; k < 3; k++) {
+        const double dot = v[0] * A[k] + v[1] * A[3 + k] + v[2] * A[6 + k];
+        for (int i = 0; i < 3; i++) A[3 * i + k] -= 2 * dot / v2 * v[i];
     }
 }
 
@@ -55,11 +59,17 @@ int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]) {
     }
     if (largest == 0) return 0;
     for (int i = 0; i < 9; i++) B[i] = A[i] / largest;
-    eliminate(B, 2, 2); /* the last column: (0, 0, beta) */
+    eliminate(B);
     const double beta = B[8];
     if (beta == 0) return 0;
-    eliminate(B, 1, 1); /* B2 lower triangular, too: its determinant is a product */
-    const double p = B[0] / beta, q = B[3] / beta, s = B[4] / beta, b[2] = {B[6] / beta, B[7] / beta};
+    /* B2 lower triangular, too, by a rotation: p is its determinant over s, no difference of what cancels */
+    const double norm = hypot(B[1], B[4]);
+    if (norm == 0) return 0;
+    int exponent; /* lest the determinant underflow */
+    (void)frexp(norm, &exponent);
+    const double det = product_difference(B[0], ldexp(B[4], -exponent), ldexp(B[1], -exponent), B[3]);
+    const double p = det / ldexp(norm, -exponent) / beta, s = norm / beta,
+                 q = (B[0] * (B[1] / norm) + B[3] * (B[4] / norm)) / beta, b[2] = {B[6] / beta, B[7] / beta};
     if (!(fabs(p * s) > 0)) return 0;
     transform[0] = 1 / p, transform[1] = 0; /* B2 = [p 0; q s] */
     transform[2] = -q / (p * s), transform[3] = 1 / s;

@@ -17,6 +17,8 @@
 double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digits);
 /* (gamma - 1) ln(a) / expm1(...) (1 - a) / -ln(a): pi a P22(0), 1 for gamma = 2; no 0/0 anywhere. */
 double mu_gtr_peak(double alpha, double gamma);
+/* c, for P22 = c/pi x^-2 and Q = c/x far out. */
+double mu_gtr_tail(double alpha, double gamma);
 
 /* The float table (smith.h) of z Lambda / that of unit GGX, with slopes in `unit`. */
 void mu_gtr_table_build(float *table, int octaves, double alpha, double gamma, double unit);

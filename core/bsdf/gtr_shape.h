@@ -64,8 +64,8 @@ static double shape_prepare(base *b, const mu_definition *definition) {
     const double unit = unit_of(alpha, gamma), a = alpha * alpha, peak = mu_gtr_peak(alpha, gamma),
                  d = 1 - gamma;
     const double ref = gamma < 1 ? 1 : 1 / fmax(1, peak), L = -log(alpha);
-    /* P22(0) = peak / (pi a); for gamma < 1, c / pi = peak a^(gamma-1) / pi */
-    g[GTR_SCALE] = R(INV_PI * (gamma < 1 ? -(1 - alpha) * (1 + alpha) * d / expm1(-2 * d * L) : peak * ref));
+    /* P22(0) = peak / (pi a); for gamma < 1, c / pi */
+    g[GTR_SCALE] = R(INV_PI * (gamma < 1 ? mu_gtr_tail(alpha, gamma) : peak * ref));
     g[GTR_REF] = R(ref);
     g[GTR_OTHER_Z] = R(gamma < 1 ? a : 1);
     g[GTR_UNIT] = R(unit);

@@ -9,10 +9,19 @@
 
 #if MU_REAL_BITS == 53
 
-double mu_gtr_peak(double alpha, double gamma) {
-    const double ln_a = 2 * log(alpha), y = (gamma - 1) * ln_a;
+/* (1 - a) / -ln a  y / expm1(y), y = sign (gamma - 1) ln a */
+static double over_expm1(double alpha, double gamma, double sign) {
+    const double ln_a = 2 * log(alpha), y = sign * (gamma - 1) * ln_a;
     const double first = ln_a < 0 ? -(1 - alpha) * (1 + alpha) / ln_a : 1;
     return first * (y == 0 ? 1 : y > 700 ? y * exp(-y) : y / expm1(y));
+}
+
+double mu_gtr_peak(double alpha, double gamma) {
+    return over_expm1(alpha, gamma, 1);
+}
+
+double mu_gtr_tail(double alpha, double gamma) {
+    return over_expm1(alpha, gamma, -1);
 }
 
 typedef struct survival {
@@ -40,10 +49,7 @@ static double survival_at(const void *shape, double x) {
 double mu_gtr_z_lambda(double alpha, double gamma, double r, double z, int digits) {
     if (!(r > 0)) return 0;
     const double zeta = z / r;
-    if (zeta > 1e8) { /* Q = c/x to 1e-16 */
-        const double c = mu_gtr_peak(alpha, gamma) * exp((gamma - 1) * 2 * log(alpha));
-        return c * r / (4 * zeta);
-    }
+    if (zeta > 1e8) return mu_gtr_tail(alpha, gamma) * r / (4 * zeta); /* Q = c/x to 1e-16 */
     const survival q = survival_make(alpha, gamma);
     const double end = log(alpha) - log(fmax(1, gamma)) / 2 - 45; /* y far below all widths of Q */
     return mu_smith_z_lambda(survival_at, &q, end, r, z, digits);

@@ -47,7 +47,9 @@ static inline real unshadowed(plan_kind plan, const closure *c, const real i[3],
 static inline real shadowing_of(plan_kind plan, const closure *c, const real i[3], real lambda_i,
                                 int transmitted) {
     const real s = c->map.view_z;
-    const real Lambda_o = larger(c->lambda / s / c->wo[2], 0), Lambda_i = larger(lambda_i / s / i[2], 0);
+    const real most = REAL_MAX / 4; /* lest 0 times infinity be asked for */
+    const real Lambda_o = smaller(larger(c->lambda / s / c->wo[2], 0), most),
+               Lambda_i = smaller(larger(lambda_i / s / i[2], 0), most);
     const mu_masking_form form = plan == PLAN_FULL ? c->surface->masking : MU_HEIGHT_CORRELATED;
     if (form == MU_SEPARABLE) return 1 / (1 + Lambda_o) / (1 + Lambda_i);
     if (form == MU_HEIGHT_CORRELATED || transmitted) return 1 / (1 + Lambda_o + Lambda_i);

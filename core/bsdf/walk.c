@@ -151,12 +151,14 @@ void MU(walk_trace)(const kernel *full, const closure *c, const multiple *with, 
 /* Toward i: the density of the facets at hand that send the ray there, 1/sr, with F or 1 - F. */
 static void toward(const walk *p, const real from[3], real seen, const real i[3], int refracted, real F[3]) {
     const real eta = eta_of(p, p->side);
-    real H[3], H2 = 0, facing = 0, density = 0;
+    real H[3], H2 = 0, apart2 = 0, facing = 0, density = 0;
     const real sign = eta > 1 ? R(1) : R(-1);
     for (int k = 0; k < 3; k++) {
-        H[k] = refracted ? sign * (eta * i[k] - from[k]) : from[k] + i[k];
-        H2 += square(H[k]), facing += H[k] * from[k];
+        const real apart = i[k] - from[k]; /* as in refraction.h: nothing cancels where eta is near 1 */
+        H[k] = refracted ? sign * ((eta - 1) * i[k] + apart) : from[k] + i[k];
+        H2 += square(H[k]), apart2 += square(apart), facing += H[k] * from[k];
     }
+    if (refracted) H2 = square(eta - 1) + eta * apart2;
     F[0] = F[1] = F[2] = 0;
     const real H_i = dot(H, i);
     if (H[2] > 0 && H2 > 0 && facing > 0 && H_i > 0) {

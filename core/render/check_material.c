@@ -17,6 +17,12 @@ static mu_form form_of(const json_t *material) {
                                                    : MU_FORM_HEIGHT;
 }
 
+/* Light that meets several facets obeys none of the laws of one. */
+static _Bool scatters_once(const json_t *material) {
+    const json_t *multiple = json_object_get(material, "multiple_scattering");
+    return !json_is_string(multiple) || !strcmp(json_string_value(multiple), "none");
+}
+
 static double eta_of(const mu_material *material, const json_t *json) {
     const uint32_t refracts = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION;
     if (!(material->plan.lobes & refracts)) return 0;
@@ -33,6 +39,10 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
     if (out->material.one_footprint)
         return mu_place_fail(place, error,
                              "shows the flakes of one footprint: its D is not a density. Leave it out");
+    if (!scatters_once(place->value))
+        return mu_place_fail(place, error,
+                             "scatters several times: the laws are those of single scattering. Leave "
+                             "multiple_scattering out");
     if (out->material.jacobian.map != MU_JACOBIAN_NONE || slots)
         return mu_place_fail(place, error, "varies over the surface");
     if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample)

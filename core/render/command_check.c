@@ -38,10 +38,10 @@ static const mu_usage usage = {
     "check", "[OPTIONS] [SCENE...]",
     "Checks materials numerically: random distributions under random linear maps (also nearly singular, "
     "mirrored\n"
-    "and scaled by 1e-12 to 1e12), and all constant materials of the given scenes. Normalisation of D, G1 "
-    "and the\n"
-    "visible normals by adaptive quadrature, samplers by chi^2, pdf and weight against f, reciprocity, the\n"
-    "transformation laws, and the float shading calls that renderers use.\n",
+    "and scaled by 1e-12 to 1e12), and all constant materials of the given scenes that scatter singly.\n"
+    "Normalisation of D, G1 and the visible normals by adaptive quadrature, samplers by chi^2, pdf and "
+    "weight\n"
+    "against f, reciprocity, the transformation laws, and the float shading calls that renderers use.\n",
     options,
     "Each line of the table is a law: how often it was tested, the worst error with its tolerance, or the "
     "smallest\n"

@@ -160,6 +160,8 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     if (result != MUSURF_OK) return result;
     const int ndf = musurf_choice(g, NDF);
     d->ndf = ndf_of[ndf];
+    const int foreign = d->ndf == MU_PHONG ? any(g, (const uint32_t[]){ALPHA, ROUGHNESS, 0}) : 0;
+    if (foreign) return misplaced(g, foreign, "phong has an exponent in place of a roughness");
     result = parse_histogram(g, d);
     if (result != MUSURF_OK) return result;
     result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, m) : parse_anisotropy(g, d, m);

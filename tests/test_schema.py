@@ -11,7 +11,7 @@ import unittest
 from command import answers, musurf, strict
 
 # What only a plugin can judge, by parameters together; the schema cannot say it.
-BEYOND_A_SCHEMA = ("not both", "needs both n and k", "is singular", "is defined for", "belongs to the ellipsoid",
+BEYOND_A_SCHEMA = ("not both", "phong has an exponent", "needs both n and k", "is singular", "is defined for", "belongs to the ellipsoid",
                    "an ellipsoid has", "A says all", "all three above 0", "a singular A", "is symmetric", "positive definite",
                    "needs alpha above 0", "needs a dielectric", "needs the visible sampler", "needs a histogram",
                    "belongs to ndf", "has no meaning here", "all weights are 0", "is not a row of", "but weights has",

@@ -13,7 +13,7 @@ static const double smallest = 1e-12; /* singular value of L, lest it leave floa
 static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
 void mu_albedo_direction(const mu_albedo *t, float a, float b, float w[3]) {
-    const float half = (float)ALBEDO_CELLS / 2, x = a / half - 1, y = b / half - 1;
+    const float half = (float)t->cells / 2, x = a / half - 1, y = b / half - 1;
     const float p[2] = {(x + y) / 2, (x - y) / 2}, s = fminf(fabsf(p[0]) + fabsf(p[1]), 1);
     const float ln_z = t->power * log1pf(-s), z = fmaxf(expf(ln_z), t->horizon);
     const float slope = s > 0 ? -expm1f(fmaxf(ln_z, -100)) / s : t->power;
@@ -26,7 +26,8 @@ void mu_albedo_direction(const mu_albedo *t, float a, float b, float w[3]) {
 }
 
 void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *s, float u0, float u1, float w[3]) {
-    int low = 0, high = ALBEDO_CELLS * ALBEDO_CELLS - 1;
+    const int cells = t->cells;
+    int low = 0, high = cells * cells - 1;
     while (low < high) { /* the first cell whose sum is above u0 */
         const int middle = (low + high) / 2;
         if (s->cumulative[middle] > u0) {
@@ -37,8 +38,7 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *s, float u0, float
     }
     const float before = low ? s->cumulative[low - 1] : 0,
                 within = (u0 - before) / (s->cumulative[low] - before);
-    mu_albedo_direction(t, (float)(low / ALBEDO_CELLS) + fminf(within, 1), (float)(low % ALBEDO_CELLS) + u1,
-                        w);
+    mu_albedo_direction(t, (float)(low / cells) + fminf(within, 1), (float)(low % cells) + u1, w);
 }
 
 /* L from V = s M^-1, s the slope unit: what is rougher than 1 along an axis is bounded. */
@@ -61,34 +61,36 @@ static void lay(const surface *s, const mu_definition *d, mu_albedo *t) {
     t->horizon = (float)(1e-7 * wide);
 }
 
-static void fill_lost(const surface *s, double core, const mu_albedo *t, float side, mu_albedo_side *out) {
+static void fill_lost(const surface *s, const mu_definition *d, const mu_albedo *t, float side,
+                      mu_albedo_side *out) {
     /* leaves what is level and isotropic before M as it is */
     const int half_turn = s->tilt[0] == 0 && s->tilt[1] == 0 && !(s->general->traits & ANISOTROPIC);
-    const int count = ALBEDO_NODES * ALBEDO_NODES;
+    const int nodes = t->cells + 1, count = nodes * nodes;
     for (int i = 0; i < count; i++) {
         float w[3];
         if (half_turn && i > count / 2) {
             out->lost[i] = out->lost[count - 1 - i];
             continue;
         }
-        mu_albedo_direction(t, (float)(i / ALBEDO_NODES), (float)(i % ALBEDO_NODES), w);
+        mu_albedo_direction(t, (float)(i / nodes), (float)(i % nodes), w);
         for (int k = 0; k < 3; k++) w[k] *= side;
-        out->lost[i] = fmaxf(1 - MU(albedo_integral)(s, core, w), least);
+        out->lost[i] = fmaxf(1 - MU(albedo_integral)(s, d, w), least);
     }
 }
 
 /* The lobe's shares by cell, and its average: of what is interpolated, so that no light is lost or made. */
 static void fill_lobe(const mu_albedo *t, mu_albedo_side *out) {
+    const int cells = t->cells, count = cells * cells;
     double total = 0, cosines = 0;
-    for (int cell = 0; cell < ALBEDO_CELLS * ALBEDO_CELLS; cell++) {
+    for (int cell = 0; cell < count; cell++) {
         double sum = 0;
         for (int i = 0; i < WITHIN * WITHIN; i++) {
             float w[3];
-            mu_albedo_direction(t, (float)(cell / ALBEDO_CELLS) + ((float)(i / WITHIN) + 0.5f) / WITHIN,
-                                (float)(cell % ALBEDO_CELLS) + ((float)(i % WITHIN) + 0.5f) / WITHIN, w);
+            mu_albedo_direction(t, (float)(cell / cells) + ((float)(i / WITHIN) + 0.5f) / WITHIN,
+                                (float)(cell % cells) + ((float)(i % WITHIN) + 0.5f) / WITHIN, w);
             const albedo_place at = albedo_locate(t, w);
             const double solid = (double)w[2] / (double)at.stretch;
-            sum += (double)albedo_lost(out, at) * solid;
+            sum += (double)albedo_lost(t, out, at) * solid;
             cosines += solid;
         }
         out->cumulative[cell] = (float)sum;
@@ -96,11 +98,11 @@ static void fill_lobe(const mu_albedo *t, mu_albedo_side *out) {
     }
     out->average = (float)(total / cosines);
     double so_far = 0;
-    for (int cell = 0; cell < ALBEDO_CELLS * ALBEDO_CELLS; cell++) {
+    for (int cell = 0; cell < count; cell++) {
         so_far += (double)out->cumulative[cell] / total;
         out->cumulative[cell] = (float)so_far;
     }
-    out->cumulative[ALBEDO_CELLS * ALBEDO_CELLS - 1] = 1;
+    out->cumulative[count - 1] = 1;
 }
 
 /* Of what meets two facets or more and leaves, the share that leaves on the upper side, under uniform light from above:
@@ -141,12 +143,13 @@ size_t mu_albedo_scratch(const mu_definition *d) {
 void mu_albedo_make(const mu_definition *d, mu_albedo *t, void *scratch) {
     const mu_definition single = reduced(d);
     const surface *s = MU(mu_surface_make)(&single, scratch);
-    /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
-    const double core = d->ndf == MU_GTR ? fmin(1, (double)s->alpha / s->unit) : 1;
     lay(s, d, t);
-    const int sides = d->transmission ? 2 : 1;
+    t->cells = d->compensation_cells;
+    const int sides = d->transmission ? 2 : 1, nodes = t->cells + 1;
     for (int i = 0; i < sides; i++) {
-        fill_lost(s, core, t, i ? -1.0f : 1.0f, &t->side[i]);
+        t->side[i].lost = t->values + (size_t)i * albedo_side_values(t->cells);
+        t->side[i].cumulative = t->side[i].lost + nodes * nodes;
+        fill_lost(s, d, t, i ? -1.0f : 1.0f, &t->side[i]);
         fill_lobe(t, &t->side[i]);
         t->side[i].passes = 0;
     }

@@ -32,6 +32,7 @@ static const double weight[8] = {0.05061426814518813, 0.11119051722668724, 0.156
 typedef struct ray {
     const closure *c;
     double level[2], along[2];
+    double panel; /* the widest in t */
     int transmission;
 } ray;
 
@@ -68,7 +69,7 @@ static double integrand(const ray *l, double r) {
 static void stretch(const ray *l, double core, double from, double to, double *sum) {
     const double t0 = asinh(from / core), t1 = asinh(to / core);
     if (!(t1 > t0)) return;
-    const int panels = (int)ceil((t1 - t0) / 2.5);
+    const int panels = (int)ceil((t1 - t0) / l->panel);
     const double width = (t1 - t0) / panels;
     for (int i = 0; i < panels; i++) {
         double part = 0;
@@ -122,27 +123,30 @@ static double azimuth(const ray *l, double core) {
     return sum;
 }
 
-float MU(albedo_integral)(const surface *s, double core, const float wo[3]) {
+float MU(albedo_integral)(const surface *s, const mu_definition *d, const float wo[3]) {
+    /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
+    const double core = d->ndf == MU_GTR ? fmin(1, (double)s->alpha / s->unit) : 1;
+    const int panels = d->compensation_panels;
     closure c;
     if (!MU(mu_bind)(s, wo, NULL, &c)) return 1;
     const double z = (double)c.map.view_z, v[4] = {(double)c.map.view[0] / z, (double)c.map.view[1] / z,
                                                    (double)c.map.view[2] / z, (double)c.map.view[3] / z};
     const double t[2] = {(double)c.map.tilt[0], (double)c.map.tilt[1]}, det = fabs(v[0] * v[3] - v[1] * v[2]);
-    ray l = {.c = &c, .transmission = s->transmission};
+    ray l = {.c = &c, .panel = 10.0 / panels, .transmission = s->transmission};
     l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
     const double facing = atan2(v[2] * (double)c.wo[0] + v[3] * (double)c.wo[1],
                                 v[0] * (double)c.wo[0] + v[1] * (double)c.wo[1]);
     const double unlike = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) / (2 * det);
     /* more where edges are elsewhere, or an axis is 4 times the other */
-    const int quarters = s->transmission || unlike > 2 || t[0] != 0 || t[1] != 0 ? 8 : 4;
+    const int around = s->transmission || unlike > 2 || t[0] != 0 || t[1] != 0 ? 2 * panels : panels;
     double sum = 0;
-    for (int j = 0; j < 8 * quarters; j++) {
-        const double phi = facing + 2 * PI * ((node[j % 8] + j / 8) / quarters - 0.25),
+    for (int j = 0; j < 8 * around; j++) {
+        const double phi = facing + 2 * PI * ((node[j % 8] + j / 8) / around - 0.25),
                      u[2] = {cos(phi), sin(phi)};
         l.along[0] = v[0] * u[0] + v[2] * u[1], l.along[1] = v[1] * u[0] + v[3] * u[1];
         sum += weight[j % 8] * azimuth(&l, core);
     }
-    return (float)fmin(sum * det * 2 * PI / quarters, 1);
+    return (float)fmin(sum * det * 2 * PI / around, 1);
 }
 
 #endif

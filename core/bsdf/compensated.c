@@ -42,14 +42,14 @@ static lobe lobe_toward(const closure *c, const multiple *m, const real i[3], in
     const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]},
                 i_f[3] = {(float)i[0], (float)i[1], (float)i[2]};
     const albedo_place at_o = albedo_locate(t, o_f), at_i = albedo_locate(t, i_f);
-    const real lost_o = R(albedo_lost(from, at_o)), lost_i = R(albedo_lost(to, at_i));
+    const real lost_o = R(albedo_lost(t, from, at_o)), lost_i = R(albedo_lost(t, to, at_i));
     const real share = R(transmitted ? from->passes : 1 - from->passes),
                share_back = R(transmitted ? to->passes : 1 - to->passes);
     const real transmits = R(c->surface->transmission);
     lobe l = {.chosen = transmits > 0 ? lost_o : chance(m, lost_o),
               .back = transmits > 0 ? lost_i : chance(m, lost_i),
-              .pdf = share * R(albedo_density(to, at_i)),
-              .reverse = share_back * R(albedo_density(from, at_o))};
+              .pdf = share * R(albedo_density(t, to, at_i)),
+              .reverse = share_back * R(albedo_density(t, from, at_o))};
     for (int k = 0; k < 3; k++)
         l.f[k] = share * lost_o * (lost_i / R(to->average)) * R(INV_PI) * m->repeated[k];
     return l;
@@ -105,7 +105,7 @@ void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sam
                             sample *out) {
     const multiple *m = multiple_of(c->surface);
     const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]};
-    const real lost = R(albedo_lost(&m->albedo->side[below(c)], albedo_locate(m->albedo, o_f)));
+    const real lost = R(albedo_lost(m->albedo, &m->albedo->side[below(c)], albedo_locate(m->albedo, o_f)));
     const real chosen = c->surface->transmission ? lost : chance(m, lost);
     real moved[3] = {u[0], u[1], u[2]};
     if (u[2] < chosen) {

@@ -21,6 +21,8 @@ mu_definition mu_definition_default(void) {
         .k = {4.152, 3.586, 2.869},
         .flake_density = 1e6,
         .flake_cone = 0.02,
+        .compensation_cells = 36,
+        .compensation_panels = 4,
     };
 }
 
@@ -96,6 +98,11 @@ static int tilts_too_much(const mu_definition *d) {
 }
 
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
+    if (d->multiple == MU_COMPENSATED && !(d->compensation_cells >= 2 && d->compensation_cells <= 256))
+        return complain(why, "compensation_cells", d->compensation_cells,
+                        "a table has 2 to 256 cells a side");
+    if (d->multiple == MU_COMPENSATED && !(d->compensation_panels >= 1 && d->compensation_panels <= 64))
+        return complain(why, "compensation_panels", d->compensation_panels, "the azimuth has 1 to 64 panels");
     why->field = "multiple";
     const char *right = "";
     if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {

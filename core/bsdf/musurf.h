@@ -122,6 +122,9 @@ typedef struct mu_definition {
     uint64_t flake_seed;
     mu_scattering multiple;
     unsigned salt; /* of the random walk's hash: another salt, another noise */
+    /* Of compensation: cells along a side of its tables, 2 ... 256, and panels of the azimuth (8 Gauss nodes each) by which
+     * each of their values is integrated, 1 ... 64. Time to make a surface grows as cells² panels², tables as cells². */
+    int compensation_cells, compensation_panels;
 } mu_definition;
 
 mu_definition mu_definition_default(void);

@@ -9,7 +9,8 @@ efficiency: deps
 run-efficiency: all $(BENCHMARKS)
 	@BUILD=$(BUILD) $(PYTHON) scripts/efficiency -o $(BUILD)/efficiency $(if $(QUICK),--quick)
 
-# The long report: error against run time as curves, the study above, and what `make demo` left, if it ran. QUICK=1: small.
+# The long report: error against run time as curves, the study above, and what `make demo`, `make test` and `make stability`
+# left, if they ran. QUICK=1: small.
 report: deps
 	@$(MAKE) --no-print-directory run-report
 run-report: run-efficiency
@@ -17,6 +18,7 @@ run-report: run-efficiency
 	@BUILD=$(BUILD) $(PYTHON) scripts/report --curves $(BUILD)/curves --efficiency $(BUILD)/efficiency \
 	    $(if $(wildcard $(BUILD)/plates/plates.json),--plates $(BUILD)/plates) \
 	    $(if $(wildcard $(BUILD)/validate/fragment.html),--validate $(BUILD)/validate) \
+	    --mutants $(BUILD)/mutants.json --stability $(BUILD)/stability \
 	    --json $(BUILD)/report/report.json -o $(BUILD)/report/report.html
 
 # The README's accuracy, speed and stability tables, measured again.

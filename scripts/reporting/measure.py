@@ -3,7 +3,7 @@
 """Error against run time, from the benchmarks: each curve's error and time come from the same run.
 
 A curve is a JSON object: "title", "text", "command"; "x" and "y": {"label", "log"}; "series": [{"name", "line", "points": [{"x",
-"y", "label"}]}]. scripts/reporting/curves.py draws every file of that form in a folder, in the order of their names.
+"y", "label"}]}]; more than that, such as "rows", is for readers of the JSON alone. scripts/reporting/curves.py draws every file of that form in a folder, in the order of their names.
 """
 import argparse
 import json
@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 import sys
 
-from . import page
+from . import compensation, page
 
 
 def lines_of(program):
@@ -72,13 +72,17 @@ def samplers(program):
                          "x": {"label": "nanoseconds of processor time", "log": True}, "y": {"label": "variance of one sample", "log": True}}
 
 
+def compensated(program):
+    return compensation.curves(lines_of(program), named(program))
+
+
 def main(arguments, build):
     parser = argparse.ArgumentParser("scripts/curves", description="Measures error against run time with the benchmarks of the build folder and "
                                      "writes one JSON file for each curve. Exit 0; 1 if a benchmark is missing or fails; 2 on wrong usage.")
     parser.add_argument("-o", metavar="DIR", dest="output", default=str(build / "curves"))
     options = parser.parse_args(arguments)
     try:
-        for make, program in ((masking, "bench_masking"), (samplers, "bench_samplers")):
+        for make, program in ((masking, "bench_masking"), (samplers, "bench_samplers"), (compensated, "bench_albedo")):
             for name, curve in make(build / "tests" / program):
                 path = pathlib.Path(options.output) / f"{name}.json"
                 page.write(path, json.dumps(curve, indent=1, ensure_ascii=False))

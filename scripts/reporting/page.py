@@ -10,7 +10,7 @@ import os
 import pathlib
 import sys
 
-from . import curves, exr_header, plates, versions
+from . import curves, exr_header, mutants, plates, stability, versions
 
 
 def page(sections, subtitle):
@@ -60,6 +60,16 @@ def make(options, build):
         data["efficiency"] = json.loads((folder / "efficiency.json").read_text())
         sections.append(f'<section id="efficiency">{(folder / "fragment.html").read_text()}</section>')
         links.append('<a href="#efficiency">Masking and sampling</a>')
+    if options.mutants:
+        path = pathlib.Path(options.mutants)
+        data["mutants"] = mutants.load(path) if path.exists() else None
+        sections.append(mutants.section(data["mutants"]))
+        links.append('<a href="#mutants">Mutants</a>')
+    if options.stability:
+        folder = pathlib.Path(options.stability)
+        data["stability"], pictures = stability.load(folder) if (folder / "stability.json").exists() else (None, [])
+        sections.append(stability.section(data["stability"], pictures))
+        links.append('<a href="#stability">Stability</a>')
     data["versions"] = dict(versions.gather(build, validation))
     sections.append(versions.section(data["versions"].items()))
     links.append('<a href="#versions">Versions</a>')
@@ -75,6 +85,8 @@ def main(arguments, build):
     parser.add_argument("--validate", metavar="DIR", help="output folder of scripts/validate")
     parser.add_argument("--curves", metavar="DIR", help="output folder of scripts/curves")
     parser.add_argument("--efficiency", metavar="DIR", help="output folder of scripts/efficiency")
+    parser.add_argument("--mutants", metavar="FILE", help="mutants.json of tests/test_mutants.py; if it is not there, how to make it")
+    parser.add_argument("--stability", metavar="DIR", help="output folder of scripts/stability; likewise")
     parser.add_argument("--json", metavar="FILE", help="the same as data")
     parser.add_argument("-o", metavar="FILE", dest="output", default=os.path.join(str(build), "report", "index.html"))
     options = parser.parse_args(arguments)

@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from . import masking, noise  # noqa: E402
+from . import equation2, masking, noise  # noqa: E402
 
 INK = {"ndf": "#8c8c8c", "mixed": "#c44e52", "visible": "#1f77b4", "visible_uniform": "#55a868", "folded": "#dd8452", "auto": "#8172b3"}
 
@@ -40,6 +40,22 @@ def figure_9(exact, spline, path):
     axes[1, 0].set_ylabel("error of the spline's G1")
     axes[0, 0].legend(fontsize=8)
     axes[1, 0].legend(fontsize=8)
+    return save(figure, path)
+
+
+def equation_2(away, path):
+    """Error of Eq. (2) over gamma: the spline's in lines, what exact masking (and the integral itself) leaves dashed."""
+    figure, axes = plt.subplots(1, len(masking.ALPHAS), figsize=(15, 3.8), squeeze=False, sharey=True)
+    for k, alpha in enumerate(masking.ALPHAS):
+        axis = axes[0, k]
+        for c, theta in enumerate((30, 60, 85, 89.5)):
+            a = int(np.abs(equation2.ANGLES - theta).argmin())
+            for smith, line in (("spline", "-"), ("exact", (0, (3, 2)))):
+                axis.semilogy(equation2.GAMMAS, np.maximum(np.abs(away[smith][k, :, a]), 1e-16), color=f"C{c}", linestyle=line,
+                              label=f"θ = {theta:g}°" if smith == "spline" else None)
+        axis.set(title=f"α = {alpha:g}", xlabel="γ")
+    axes[0, 0].set_ylabel("relative error of Eq. (2)")
+    axes[0, 0].legend(fontsize=8)
     return save(figure, path)
 
 

@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-from . import charts, furnace, knot, masking, noise, rendering, tables
+from . import charts, equation2, furnace, knot, masking, noise, rendering, tables
 
 GOAL = 0.75  # of the samples that mixed needs, on average; checked, never tuned for
 
@@ -39,6 +39,9 @@ def run(options, build):
     say("masking: spline against exact")
     exact, spline, worst = masking.run(musurf)
     charts.figure_9(exact, spline, folder / "figure9.png")
+    say("masking: Eq. (2)")
+    away, defining = equation2.run(musurf)
+    charts.equation_2(away, folder / "equation2.png")
     say("samplers in a white furnace")
     found = furnace.run(build)
     with tempfile.TemporaryDirectory(prefix="musurf-knot-") as scratch:
@@ -53,7 +56,7 @@ def run(options, build):
     averages = verdict(settings)
     result = {"command": options.command, "effort": vars(effort), "goal": GOAL,
               "reached": {mode: averages[mode]["visible"]["samples"] <= GOAL for mode in noise.MODES},
-              "averages": averages, "figure9": worst, "figure10": settings, "furnace": furnace.table(found),
+              "averages": averages, "figure9": worst, "equation2": defining, "figure10": settings, "furnace": furnace.table(found),
               "bounded": furnace.bounded(found), "equal_time": furnace.equal_time(found), "seconds": round(time.monotonic() - start, 1)}
     write(folder / "efficiency.json", json.dumps(result, indent=1))
     write(folder / "fragment.html", tables.fragment(result, folder))

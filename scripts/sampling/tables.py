@@ -8,6 +8,7 @@ from . import noise
 
 MODES = {"bsdf": "BSDF sampling alone", "mis": "with light sampling, as rendered"}
 CAPTIONS = {"figure9.png": "Figure 9 with the exact curves: G1 of GTR, and how far the spline of Appendix A is off between the integers.",
+            "equation2.png": "Eq. (2), which defines masking: error of the spline (lines) and of exact masking (dashed).",
             "knot.png": "The torus knot of Figure 10: GTR, α = 0.3, γ = 1, lit by one rectangle.",
             "figure10.png": "Figure 10: samples per pixel for the noise that mixed sampling (Appendix B) leaves."}
 
@@ -65,6 +66,11 @@ def fragment(result, folder):
         table(("α", "largest error of G1", "at γ", "at θ", "exact", "spline", "mean error", "share of values at 1", "error at integers"),
               [(r["alpha"], r["largest"], r["gamma"], r["theta"], r["exact"], r["spline"], r["mean"], r["at_1"], r["at_integers"])
                for r in result["figure9"]]),
+        "<h3>Against Eq. (2)</h3><p>Masking is what makes the visible facets fill the view: ∫ D(m) G1(v) max(0, v·m) dm = cos θ. Integrated "
+        "with D and G1 as <code>musurf eval</code> says them, relative to cos θ. What exact masking leaves is of this integral.</p>",
+        picture(folder, "equation2.png"),
+        table(("α", "masking", "largest error of Eq. (2)", "at γ", "at θ", "mean error"),
+              [(r["alpha"], r["smith"], r["largest"], r["gamma"], r["theta"], r["mean"]) for r in result["equation2"]]),
         "<h3>Noise on the torus knot</h3>",
         f"<p>{effort['size'][0]} × {effort['size'][1]} pixels; {' and '.join(map(str, effort['counts']))} samples per pixel with {effort['seeds']} "
         f"seeds, against 2 × {effort['reference']} samples with light sampling. All in units of mixed, averaged over γ and s.</p>",

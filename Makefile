@@ -98,7 +98,7 @@ help:
 	@echo 'make            build everything into $(BUILD)/'
 	@echo 'make bench      speed, as ratios measured in one run'
 	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance'
-	@echo 'make report     the same, error against run time as curves, and what make demo left: one page'
+	@echo 'make report     the same, error against run time as curves, mutants, stability, and what make demo left: one page'
 	@echo 'make tables     measure the accuracy and speed tables of the README again'
 	@echo 'make stability  measure errors over stiff and extreme cases, in float and double, into $(BUILD)/stability/'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'

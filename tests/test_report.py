@@ -104,6 +104,41 @@ class Report(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, "^report: [^\n]*not what it should be[^\n]*\n$")
 
+    def test_mutants_and_stability_are_told_or_how_to_make_them(self):
+        mutants, stability, data = self.path / "mutants.json", self.path / "stability", self.path / "report.json"
+        words = ("--mutants", str(mutants), "--stability", str(stability), "--json", str(data))
+        done = self.run_report(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.output.read_text()
+        self.assertIn("make test ONLY=mutants", page)
+        self.assertIn("make stability", page)
+        self.assertEqual([json.loads(data.read_text())[key] for key in ("mutants", "stability")], [None, None])
+        lives = {"mutant": 2, "what": "M < N", "as_it_should_be": False, "fast": False, "slow": False}
+        mutants.write_text(json.dumps({"checks": ["fast", "slow"], "mutants": [
+            {"mutant": 0, "what": "none", "as_it_should_be": True, "fast": False, "slow": False},
+            {"mutant": 1, "what": "det", "as_it_should_be": True, "fast": True, "slow": None}, lives]}))
+        stability.mkdir()
+        row = {"values": 7, "median": 0, "p99": 1e-9, "worst": 2.5e-8, "excess_worst": 0, "of_allowed": 0.25, "where": "3:ggx"}
+        (stability / "stability.json").write_text(json.dumps({"points": 9, "failures": ["F & G"], "summary": {"double": {"D": row}}, "records": [1]}))
+        done = self.run_report(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.output.read_text()
+        self.assertIn("1 of 2 wrong versions of the core are rejected", page)
+        self.assertIn("<tr class=fails><td>2</td><td>M &lt; N</td>", page)
+        self.assertRegex(page, "9 materials and directions[^<]* 1 failures.*2.5e-08.*3:ggx.*F &amp; G")
+        self.assertNotIn("records", json.loads(data.read_text())["stability"])
+
+    def test_points_that_share_labels_stand_in_one_column(self):
+        sys.path.insert(0, str(ROOT / "scripts"))
+        from reporting import curves
+        point = lambda x, y, label: {"x": x, "y": y, "label": label}  # noqa: E731
+        curve = {"x": {"label": "ns"}, "y": {"label": "error"}, "series": [
+            {"name": "a", "points": [point(12345.6, 0.5, "4"), point(2, 0.25, "8")]}, {"name": "b", "points": [point(3, 0.125, "8")]}]}
+        table = curves.table(curve)
+        self.assertIn("<th>4</th><th>8</th>", table)
+        self.assertIn("<td>a</td><td>0.5<br><span class=faint>12346</span></td><td>0.25<br><span class=faint>2</span></td>", table)
+        self.assertIn("<td>b</td><td>–</td><td>0.125<br>", table)
+
     def test_broken_inputs_leave_the_old_page(self):
         self.output.parent.mkdir()
         self.output.write_text("old")

@@ -21,10 +21,6 @@ def point(rows, x, label, error="worst"):
     return {"x": sum(r[x] for r in rows) / len(rows), "y": y, "label": label}
 
 
-def size(rows):
-    return f"{sum(r['bytes'] for r in rows) / len(rows) / 1024:.2g} KiB"
-
-
 def series(rows, x, label):
     """Worst and rms of each distribution, over its materials, along cells."""
     out = []
@@ -42,19 +38,19 @@ def curves(rows, command):
     panels = sorted((r for r in rows if r["cells"] == fixed), key=lambda r: r["panels"])
     common = {"command": command, "y": {"label": "error of the furnace (1 is right)", "log": True}}
     without = "; ".join(f"{NAMES[ndf]} {max(r['worst'] for r in of):.2g}" for (ndf,), of in by(singly, "ndf").items())
-    cells = lambda of: f"{of[0]['cells']}² cells, {size(of)}"  # noqa: E731
+    cells = lambda of: f"{of[0]['cells']}² cells" if of[0]["cells"] else "without"  # noqa: E731
     yield "4-compensation-compile", dict(
         common, title="Compensated multiple scattering: error against what a material costs to make", series=series(tabled, "compile_us", cells),
         text=f"A white furnace with F = 1, 24 views to 89.5°, by the cells of the tables; {MATERIALS}: the worst of all, and the root mean "
-             f"square. The default is {fixed}² cells, {usual} panels. Without compensation the worst are: {without}. rows in report.json: each material.",
+             f"square. The default is {fixed}² cells, {usual} panels. Without compensation the worst are: {without}. report.json holds every material in rows.",
         x={"label": "microseconds to make a material, mean", "log": True}, rows=rows)
     yield "5-compensation-panels", dict(
         common, title="Compensated multiple scattering: quadrature nodes against what a material costs to make",
-        series=series(panels, "compile_us", lambda of: f"{of[0]['panels']} panels of 8 nodes"),
+        series=series(panels, "compile_us", lambda of: f"{of[0]['panels']} × 8 nodes"),
         text=f"The same by the panels of azimuth by which each value of the table is integrated (twice as many where M is far from a similarity), "
              f"at {fixed}² cells. Where more panels gain nothing, the cells decide.", x={"label": "microseconds to make a material, mean", "log": True})
     found = [{"name": f"{NAMES[ndf]}, α {alpha:g}", "line": True,
-              "points": [point(same, "bytes", f"{same[0]['cells']}² cells") for same in by(of, "cells").values()]}
+              "points": [point(same, "bytes", cells(same)) for same in by(of, "cells").values()]}
              for (ndf, alpha), of in by(tabled, "ndf", "alpha").items()]
     yield "6-compensation-bytes", dict(common, title="Compensated multiple scattering: error against the bytes of the tables", series=found,
                                        text="The worst over views and both maps, with all tables that the material holds in float.",
@@ -63,5 +59,5 @@ def curves(rows, command):
         common, title="Compensated multiple scattering: error against the time of one value",
         series=[{"name": NAMES[ndf] + ending, "line": ending == "", "points": [point(same, "ns", cells(same)) for same in by(of, "cells").values()]}
                 for group, ending in ((tabled, ""), (singly, ", without")) for (ndf,), of in by(group, "ndf").items()],
-        text="One eval with its pdfs, in float, with the tables and without: larger tables cost time only once they leave the caches.",
+        text="One eval with its pdfs, in float, with the tables and without.",
         x={"label": "nanoseconds of processor time", "log": False})

@@ -21,11 +21,14 @@ def picture(curve):
     import matplotlib.pyplot as plt
 
     figure, axis = plt.subplots(figsize=(9, 5))
+    lines = [series for series in curve["series"] if series.get("line")]  # points of many lines are told apart by the table
+    inks = plt.get_cmap("tab20" if len(curve["series"]) > 10 else "tab10").colors
     for k, series in enumerate(curve["series"]):
         xs, ys = [p["x"] for p in series["points"]], [p["y"] for p in series["points"]]
-        axis.plot(xs, ys, linestyle="-" if series.get("line") else "", marker="o", markersize=4, label=series["name"], color=f"C{k}")
-        for p in series["points"] if len(series["points"]) < 20 else []:
-            axis.annotate(p.get("label", ""), (p["x"], p["y"]), xytext=(4, 3), textcoords="offset points", fontsize=7, color=f"C{k}")
+        axis.plot(xs, ys, linestyle="-" if series.get("line") else "", marker="o", markersize=4, label=series["name"], color=inks[k % len(inks)])
+        crowded = len(series["points"]) >= 20 or (series.get("line") and len(lines) > 2 and series is not lines[0])
+        for p in [] if crowded else series["points"]:
+            axis.annotate(p.get("label", ""), (p["x"], p["y"]), xytext=(4, 3), textcoords="offset points", fontsize=7, color=inks[k % len(inks)])
     axis.set(xlabel=curve["x"]["label"], ylabel=curve["y"]["label"], xscale="log" if curve["x"].get("log") else "linear",
              yscale="log" if curve["y"].get("log") else "linear")
     axis.grid(alpha=0.3)
@@ -36,13 +39,31 @@ def picture(curve):
     return data.getvalue()
 
 
+def number(x):
+    return f"{x:.0f}" if abs(x) >= 1000 else f"{x:.4g}"
+
+
+def table(curve):
+    """A row for each series and a column for each label if labels recur, y above x; else a row for each point."""
+    x, y = (html.escape(curve[axis]["label"]) for axis in "xy")
+    every = [p.get("label", "") for series in curve["series"] for p in series["points"]]
+    labels = list(dict.fromkeys(every))
+    if len(labels) > 12 or len(labels) == len(every):
+        rows = "".join(f"<tr><td>{html.escape(series['name'])}</td><td>{html.escape(p.get('label', ''))}</td><td>{number(p['x'])}</td><td>{p['y']:.3g}</td></tr>"
+                       for series in curve["series"] for p in series["points"])
+        return f"<table><thead><tr><th></th><th></th><th>{x}</th><th>{y}</th></tr></thead><tbody>{rows}</tbody></table>"
+    rows = []
+    for series in curve["series"]:
+        at = {p.get("label", ""): f"{p['y']:.3g}<br><span class=faint>{number(p['x'])}</span>" for p in series["points"]}
+        rows.append(f"<tr><td>{html.escape(series['name'])}</td>{''.join(f'<td>{at.get(label, chr(8211))}</td>' for label in labels)}</tr>")
+    heads = "".join(f"<th>{html.escape(label)}</th>" for label in labels)
+    return f'<table><caption>{y}, below it {x}</caption><thead><tr><th></th>{heads}</tr></thead><tbody>{"".join(rows)}</tbody></table>'
+
+
 def section(curves):
     parts = ['<h2 id="curves">Error against run time</h2>', "<p>Error and time of a curve were measured in the same run.</p>"]
     for curve in curves:
         title, data = html.escape(curve["title"]), base64.b64encode(picture(curve)).decode()
-        rows = "".join(f"<tr><td>{html.escape(series['name'])}</td><td>{html.escape(p.get('label', ''))}</td><td>{p['x']:.4g}</td><td>{p['y']:.3g}</td></tr>"
-                       for series in curve["series"] for p in series["points"])
         parts.append(f'<h3>{title}</h3><p>{html.escape(curve.get("text", ""))}</p><figure><img alt="{title}" src="data:image/png;base64,{data}">'
-                     f'<figcaption>{title} · <code>{html.escape(curve.get("command", ""))}</code></figcaption></figure><table><thead><tr><th></th><th></th>'
-                     f"<th>{html.escape(curve['x']['label'])}</th><th>{html.escape(curve['y']['label'])}</th></tr></thead><tbody>{rows}</tbody></table>")
+                     f'<figcaption>{title} · <code>{html.escape(curve.get("command", ""))}</code></figcaption></figure>{table(curve)}')
     return "\n".join(parts)

@@ -3,7 +3,8 @@
 """Error against run time, from the benchmarks: each curve's error and time come from the same run.
 
 A curve is a JSON object: "title", "text", "command"; "x" and "y": {"label", "log"}; "series": [{"name", "line", "points": [{"x",
-"y", "label"}]}]; more than that, such as "rows", is for readers of the JSON alone. scripts/reporting/curves.py draws every file of that form in a folder, in the order of their names.
+"y", "label"}]}]; more than that, such as "rows", is for readers of the JSON alone. scripts/reporting/curves.py draws every file
+of that form in a folder, in the order of their names.
 """
 import argparse
 import json

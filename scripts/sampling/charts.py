@@ -72,8 +72,9 @@ def figure_10(settings, path):
             axis.set_xticks(range(len(found)), [f"s = {x['s']:g}" for x in found])
             axis.set_title(f"γ = {gamma:g}, {name}", fontsize=10)
             axis.set_yscale("log")
-        axes[row, 0].set_ylabel("samples for the same noise, over mixed")
-    axes[0, 0].legend(fontsize=8)
+        axes[row, 0].set_ylabel("samples for the same noise, over mixed", fontsize=8)
+    figure.subplots_adjust(hspace=0.35)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncols=len(noise.SAMPLERS), fontsize=9)
     return save(figure, path)
 
 

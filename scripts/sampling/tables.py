@@ -72,8 +72,8 @@ def fragment(result, folder):
         table(("α", "masking", "largest error of Eq. (2)", "at γ", "at θ", "mean error"),
               [(r["alpha"], r["smith"], r["largest"], r["gamma"], r["theta"], r["mean"]) for r in result["equation2"]]),
         "<h3>Noise on the torus knot</h3>",
-        f"<p>{effort['size'][0]} × {effort['size'][1]} pixels; {' and '.join(map(str, effort['counts']))} samples per pixel with {effort['seeds']} "
-        f"seeds, against 2 × {effort['reference']} samples with light sampling. All in units of mixed, averaged over γ and s.</p>",
+        f"<p>{effort['size'][0]} × {effort['size'][1]} pixels; {' and '.join(map(str, effort['counts']))} samples per pixel with "
+        f"{effort['seeds']} seed{'s' if effort['seeds'] > 1 else ''}, against 2 × {effort['reference']} samples with light sampling. All in units of mixed, averaged over γ and s.</p>",
         picture(folder, "knot.png"), averages(result), picture(folder, "figure10.png"), settings(result),
         "<h3>Variance of one sample in a white furnace</h3><p>GTR, α = 0.3, F = 1, azimuth 0.6; float samplers.</p>",
         table(("γ", "s", "θ", *names), [(r["gamma"], r["s"], r["theta"], *(r[n] for n in names)) for r in result["furnace"]]),

@@ -17,8 +17,8 @@ static const char *const masking_choices[] = {"separable", "height_correlated", 
 static const char *const fresnel_choices[] = {"none", "schlick", "dielectric", "conductor", NULL};
 static const char *const conductor_choices[] = {"Ag", "Al", "Au", "Cr", "Cu", "custom", NULL};
 static const char *const smith_choices[] = {"exact", "spline", NULL};
-static const char *const sampler_choices[] = {"visible", "ndf",    "mixed", "visible_uniform",
-                                              "bounded", "folded", "auto",  NULL};
+static const char *const sampler_choices[] = {
+    "visible", "ndf", "mixed", "visible_uniform", "bounded", "folded", "folded_uniform", "auto", NULL};
 static const char *const multiple_choices[] = {"none", "compensated", "random_walk", NULL};
 
 #define HEAD(id, name, label)    sizeof(musurf_param), id, name, label
@@ -70,10 +70,14 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      VALUES("", MUSURF_COLOR, 0, 0, 1000, 0, 10, 4.152, 3.586, 2.869)},
     {HEAD(13, "sampler", "Sampler"),
      "How directions are drawn: visible normals (exact for every distribution); folded, visible normals "
-     "whose reflections below the horizon are turned up again, the least noisy; D cos, or that mixed with "
-     "uniform directions with probability alpha (Appendix B), for comparison; visible normals with 3 of 10 "
-     "directions uniform; bounded, of ggx without tilt: visible normals but most that reflect below the "
-     "horizon; auto measures which has the lowest variance.",
+     "whose reflections "
+     "below the horizon are turned up again, less noisy; D cos, or that mixed with uniform directions with "
+     "probability "
+     "alpha (Appendix B), for comparison; visible_uniform and folded_uniform with 3 of 10 directions "
+     "uniform, for long "
+     "tails; bounded, of ggx without tilt: visible normals but most that reflect below the horizon; auto "
+     "measures which "
+     "has the lowest variance.",
      CHOICE("visible", sampler_choices)},
     {HEAD(14, "exponent", "Exponent"),
      "Exponent n of phong: D = (n + 2) cos^n / 2 pi. The other distributions have none.",

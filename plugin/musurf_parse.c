@@ -127,7 +127,8 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     d->transmission = musurf_number(&g, TRANSMISSION) != 0;
     d->multiple = (mu_scattering)musurf_choice(&g, MULTIPLE_SCATTERING);
     if (d->multiple == MU_COMPENSATED && out->varying)
-        return musurf_fail(host, MUSURF_UNSUPPORTED, MULTIPLE_SCATTERING,
-                           "compensated needs a constant transform: its tables are of one; random_walk takes any");
+        return musurf_fail(
+            host, MUSURF_UNSUPPORTED, MULTIPLE_SCATTERING,
+            "compensated needs a constant transform: its tables are of one; random_walk takes any");
     return judge(&g, d);
 }

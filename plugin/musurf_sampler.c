@@ -37,7 +37,7 @@ static double noise_of(const mu_surface_d *surface, mu_sampler sampler) {
 
 mu_sampler musurf_choose_sampler(const mu_definition *definition, void *memory) {
     static const mu_sampler samplers[] = {MU_SAMPLE_VISIBLE, MU_SAMPLE_VISIBLE_UNIFORM, MU_SAMPLE_BOUNDED,
-                                          MU_SAMPLE_FOLDED};
+                                          MU_SAMPLE_FOLDED, MU_SAMPLE_FOLDED_UNIFORM};
     mu_sampler best = MU_SAMPLE_VISIBLE; /* of what transmits: the others know reflection alone */
     double least = INFINITY;
     for (size_t i = 0; i < sizeof samplers / sizeof samplers[0]; i++) {

@@ -22,7 +22,8 @@
 
 enum { DRAWS = 1 << 16, TIMED = 4096, ROUNDS = 5, SAMPLERS = 5 };
 
-static const char *const names[] = {"visible", "ndf", "mixed", "visible_uniform", "bounded", "folded"};
+static const char *const names[] = {"visible", "ndf",    "mixed",         "visible_uniform",
+                                    "bounded", "folded", "folded_uniform"};
 _Static_assert(sizeof names / sizeof names[0] == MU_SAMPLER_COUNT, "a name for each");
 
 typedef struct group {

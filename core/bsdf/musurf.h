@@ -58,6 +58,7 @@ typedef enum mu_sampler {
     MU_SAMPLE_VISIBLE_UNIFORM, /* visible normals, and 3 of 10 directions uniform: for long tails seen from above */
     MU_SAMPLE_BOUNDED, /* of GGX, not tilted: visible normals but most of those that reflect below the horizon */
     MU_SAMPLE_FOLDED, /* visible normals; what reflects below the horizon is turned up again: no sample is lost */
+    MU_SAMPLE_FOLDED_UNIFORM, /* that, and 3 of 10 directions uniform */
     MU_SAMPLER_COUNT
 } mu_sampler;
 typedef enum mu_smith {

@@ -16,7 +16,13 @@ static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
 
 /* Does it draw some directions uniformly? */
 static inline int mixes(mu_sampler sampler) {
-    return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM;
+    return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM ||
+           sampler == MU_SAMPLE_FOLDED_UNIFORM;
+}
+
+/* Does it turn up what falls below the horizon? */
+static inline int folds(mu_sampler sampler) {
+    return sampler == MU_SAMPLE_FOLDED || sampler == MU_SAMPLE_FOLDED_UNIFORM;
 }
 
 /* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand.
@@ -34,14 +40,14 @@ static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
         *reverse = smaller(quarter_d * (scale / larger(shown_i, REAL_MIN)) * choice, saturated);
     }
     const real own = *pdf;
+    if (plan == PLAN_FULL && folds(sampler)) {
+        *pdf = smaller(*pdf + folded_density(plan, c, c->wo, i, c->sigma), saturated);
+        *reverse = smaller(*reverse + folded_density(plan, c, i, c->wo, sigma_i), saturated);
+    }
     if (plan == PLAN_FULL && mixes(sampler)) { /* Appendix B: the balance heuristic */
         const real share = c->surface->uniform_share, uniform = share * R(INV_PI / 2);
         *pdf = (1 - share) * *pdf + uniform;
         *reverse = (1 - share) * *reverse + uniform;
-    }
-    if (plan == PLAN_FULL && sampler == MU_SAMPLE_FOLDED) {
-        *pdf = smaller(*pdf + folded_density(plan, c, c->wo, i, c->sigma), saturated);
-        *reverse = smaller(*reverse + folded_density(plan, c, i, c->wo, sigma_i), saturated);
     }
     return own;
 }

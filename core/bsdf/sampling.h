@@ -53,11 +53,11 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
                                      real cosine, real d, const real F[3], sample *out) {
     real i[3];
     for (int k = 0; k < 3; k++) i[k] = 2 * cosine * m[k] - c->wo[k];
-    const int folds = plan == PLAN_FULL && sampler == MU_SAMPLE_FOLDED;
-    if (!(i[2] > 0) && !(folds && i[2] < 0)) return;
+    const int folded = plan == PLAN_FULL && folds(sampler);
+    if (!(i[2] > 0) && !(folded && i[2] < 0)) return;
     const real unit = R(1) / sqrt(i[0] * i[0] + i[1] * i[1] + i[2] * i[2]);
     for (int k = 0; k < 3; k++) i[k] *= unit, out->wi[k] = plan == PLAN_FULL ? c->side * i[k] : i[k];
-    if (folds && i[2] < 0) {
+    if (folded && i[2] < 0) {
         i[2] = -i[2];
         foreign_sample(c, sampler, i, out);
         return;
@@ -75,7 +75,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     real weight = ratio; /* F G2 / G1 */
     if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
         weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
-    if (folds || (plan == PLAN_FULL && mixes(sampler))) /* its own density over that of all ways */
+    if (folded || (plan == PLAN_FULL && mixes(sampler))) /* its own density over that of all ways */
         weight *= own / larger(out->pdf, REAL_MIN);
     if (plan == PLAN_FULL) {
         const real flakes = glint(plan, c, m, 1);

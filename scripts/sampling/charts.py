@@ -9,7 +9,7 @@ import numpy as np  # noqa: E402
 
 from . import equation2, masking, noise  # noqa: E402
 
-INK = {"ndf": "#8c8c8c", "mixed": "#c44e52", "visible": "#1f77b4", "visible_uniform": "#55a868", "folded": "#dd8452", "auto": "#8172b3"}
+INK = {"ndf": "#8c8c8c", "mixed": "#c44e52", "visible": "#1f77b4", "visible_uniform": "#55a868", "folded": "#dd8452", "folded_uniform": "#937860", "auto": "#8172b3"}
 
 
 def save(figure, path):

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import rendering
 
-SAMPLERS = ("ndf", "mixed", "visible", "visible_uniform", "folded", "auto")
+SAMPLERS = ("ndf", "mixed", "visible", "visible_uniform", "folded", "folded_uniform", "auto")
 MODES = {"bsdf": False, "mis": True}  # is light sampled too?
 GAMMAS, STRETCHES = (1, 0.1, 4), (0, 0.25, 0.5, 0.75)
 BASE = "mixed"  # the paper's own

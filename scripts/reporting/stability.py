@@ -27,7 +27,7 @@ def section(found, pictures):
             s = sums.get(quantity)
             if s:
                 numbers = "".join(f"<td>{s[key]:.2g}</td>" for key in KEYS)
-                rows.append(f"<tr><td>{html.escape(quantity)}</td><td>{precision}</td><td>{s['values']}</td>{numbers}<td>{html.escape(str(s['where']))}</td></tr>")
+                rows.append(f"<tr><td>{html.escape(quantity)}</td><td>{precision}</td><td>{s['values']}</td>{numbers}<td class=text>{html.escape(str(s['where']))}</td></tr>")
     figures = "".join(f'<figure><img alt="error against {name}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
                       f"<figcaption>Relative error against {html.escape(name)}.</figcaption></figure>" for name, data in pictures)
     failures = "".join(f"<li>{html.escape(str(failure))}</li>" for failure in found["failures"])

@@ -343,51 +343,6 @@ static void off_is_off(void **state) {
     free(memory);
 }
 
-/* Bilinear interpolation: the error at E's known value, in the middle of the square's cells when their count is odd, falls with
- * the cells; and the tables grow as they should: (n + 1)² + n² floats. The definition's own numbers are in use. */
-static void tables_are_as_fine_as_asked(void **state) {
-    (void)state;
-    mu_definition d = definition_of(1, 0, MU_COMPENSATED);
-    const size_t usual = mu_surface_bytes_f(&d);
-    const int sizes[] = {3, 9, 27}, nodes = d.compensation_cells + 1;
-    double before = 1;
-    assert_true(d.compensation_cells == 36 && d.compensation_panels == 4);
-    for (int i = 0; i < 3; i++) {
-        scene b;
-        float average;
-        const float up[3] = {0, 0, 1};
-        d.compensation_cells = sizes[i];
-        make(&b, &d);
-        const double error = fabs((double)mu_albedo_f(b.s, up, &average) - (1 - log(2)));
-        const int n = sizes[i] + 1,
-                  values = nodes * nodes + (nodes - 1) * (nodes - 1) - n * n - sizes[i] * sizes[i];
-        assert_true(error < before / 3);
-        assert_true(fabs((double)usual - (double)mu_surface_bytes_f(&d) - 4.0 * values) < 64);
-        before = error;
-        free(b.memory);
-    }
-    assert_true(before < 2e-3 && before > 1e-6);
-    const double wo[3] = {0.6, 0, 0.8};
-    double seen[2];
-    for (int i = 0; i < 2; i++) { /* one panel misses an edge that 4 see: 1e-3 and more (bench_albedo) */
-        scene b;
-        float average;
-        const float w[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
-        d.compensation_cells = 36, d.compensation_panels = i ? 4 : 1;
-        make(&b, &d);
-        seen[i] = (double)mu_albedo_f(b.s, w, &average);
-        free(b.memory);
-    }
-    assert_true(seen[0] != seen[1] && fabs(seen[0] - seen[1]) < 0.05);
-    mu_complaint why;
-    const int wrong[][2] = {{1, 4}, {257, 4}, {36, 0}, {36, 65}};
-    for (int i = 0; i < 4; i++) {
-        d.compensation_cells = wrong[i][0], d.compensation_panels = wrong[i][1];
-        assert_false(mu_definition_check(&d, &why));
-        assert_string_equal(why.field, i < 2 ? "compensation_cells" : "compensation_panels");
-    }
-}
-
 static void refuses_what_it_cannot_do(void **state) {
     (void)state;
     mu_complaint why;
@@ -415,7 +370,6 @@ int main(void) {
                                        cmocka_unit_test(compensation_is_pointwise),
                                        cmocka_unit_test(compensated_sampler_has_its_pdf),
                                        cmocka_unit_test(off_is_off),
-                                       cmocka_unit_test(tables_are_as_fine_as_asked),
                                        cmocka_unit_test(refuses_what_it_cannot_do)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,9 @@ static void make(surface *b, const mu_definition *d) {
     b->made = mu_surface_make_f(d, b->memory);
 }
 
-/* Bilinear interpolation: the error at E's known value, in the middle of the square's cells when their count is odd, falls with
- * the cells; and the tables grow as they should: (n + 1)² + n² floats. */
+/* Bilinear interpolation at E's known value, which lies amid a cell where their count is odd: its error is of second order in
+ * the cell, a ninth for thrice the cells; a third is asked, for the coarsest are not there yet. From 1 (no table) three such
+ * steps would leave 1/729 < 2e-3; and it is not 0, as it is at a node. Tables grow as (n + 1)² + n² floats, to a line of 64. */
 static void tables_are_as_fine_as_asked(void **state) {
     (void)state;
     mu_definition d = compensated();

@@ -25,7 +25,7 @@ static const mu_option options[] = {
     {"seed", "S", "seed of everything random, 0 to 2^63-1 (default: 1)"},
     {"precision", "float|double", "arithmetic that is checked (default: double)"},
     {"significance", "P", "probability that the whole run fails by chance (default: 0.01)"},
-    {"quick", NULL, "fewer materials, views and samples: under 10 s"},
+    {"quick", NULL, "fewer materials, views and samples"},
     {"json", NULL, "the result as JSON instead of a table"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     {"samples", "N",

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/render/command.h"
 #include "core/render/document.h"
@@ -47,6 +48,32 @@ size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, 
         mu_refuse(options->usage, "--%s is \"%s\"; %zu to %zu numbers with commas between are needed",
                   options->name, options->value, least, most);
     return 0;
+}
+
+_Bool mu_options_transform(const mu_options *options, double m[4]) {
+    if (!mu_options_numbers(options, 4, 4, m)) return 0;
+    const double det = m[0] * m[3] - m[1] * m[2];
+    const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
+    if (isfinite(size) && fabs(det) > 1e-14 * size) return 1; /* condition below 1e14: half an ulp is seen */
+    mu_refuse(options->usage, "--%s is \"%s\", which is singular", options->name, options->value);
+    return 0;
+}
+
+_Bool mu_options_view(const mu_options *options, double w[3]) {
+    if (!mu_options_numbers(options, 3, 3, w)) return 0;
+    const char *const name = options->name, *const value = options->value;
+    if (!(w[2] > 0))
+        return mu_refuse(options->usage, "--%s is \"%s\"; it must look from above, z > 0", name, value), 0;
+    int exponent;
+    frexp(fmax(fabs(w[0]), fmax(fabs(w[1]), w[2])), &exponent);
+    for (int k = 0; k < 3; k++) w[k] = ldexp(w[k], -exponent);
+    return w[2] > 0 ||
+           (mu_refuse(options->usage, "--%s is \"%s\", which is all but horizontal", name, value), 0);
+}
+
+uint32_t mu_processors(void) {
+    const long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > 256 ? 256 : (uint32_t)count;
 }
 
 int mu_command_surface(int argc, char **argv) {

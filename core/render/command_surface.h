@@ -14,5 +14,11 @@ int mu_command_surface_measure(int argc, char **argv);
 /* The value of the option just met as `least` to `most` finite numbers, commas between; how many, or 0 after a line on
  * stderr. */
 size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, double *out);
+/* M of --transform, row by row; views of --view, from above, brought to a largest component of 1/2 ... 1 by a power of two,
+ * which rounds nothing. False after a line on stderr. */
+_Bool mu_options_transform(const mu_options *options, double m[4]);
+_Bool mu_options_view(const mu_options *options, double w[3]);
+/* Threads to use unless told otherwise: 1 to 256. */
+uint32_t mu_processors(void);
 
 #endif

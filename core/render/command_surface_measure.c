@@ -52,31 +52,6 @@ typedef struct mu_asked {
     double edges[MU_MOST_BINS + 1];
 } mu_asked;
 
-static _Bool read_transform(mu_asked *asked, const mu_options *at) {
-    double *m = asked->s.m;
-    if (!mu_options_numbers(at, 4, 4, m)) return 0;
-    const double det = m[0] * m[3] - m[1] * m[2];
-    const double size = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
-    if (isfinite(size) && fabs(det) > 1e-14 * size) return 1; /* condition below 1e14: half an ulp is seen */
-    mu_refuse(&usage, "--transform is \"%s\", which is singular", at->value);
-    return 0;
-}
-
-static _Bool read_view(mu_asked *asked, const mu_options *at) {
-    if (asked->s.view_count == MU_MOST_VIEWS)
-        return mu_refuse(&usage, "more than %d views", MU_MOST_VIEWS), 0;
-    double *w = asked->s.views[asked->s.view_count].w;
-    if (!mu_options_numbers(at, 3, 3, w)) return 0;
-    if (!(w[2] > 0))
-        return mu_refuse(&usage, "--view is \"%s\"; it must look from above, z > 0", at->value), 0;
-    int exponent; /* brings the largest to 1/2...1 and rounds nothing */
-    frexp(fmax(fabs(w[0]), fmax(fabs(w[1]), w[2])), &exponent);
-    for (int k = 0; k < 3; k++) w[k] = ldexp(w[k], -exponent);
-    if (!(w[2] > 0)) return mu_refuse(&usage, "--view is \"%s\", which is all but horizontal", at->value), 0;
-    asked->s.view_count++;
-    return 1;
-}
-
 static _Bool read_bins(mu_asked *asked, const mu_options *at) {
     uint64_t count;
     asked->s.edges = NULL;
@@ -100,9 +75,11 @@ static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
     int choice = 0;
     switch (met) {
     case TRANSFORM:
-        return read_transform(asked, at);
+        return mu_options_transform(at, asked->s.m);
     case VIEW:
-        return read_view(asked, at);
+        if (asked->s.view_count == MU_MOST_VIEWS)
+            return mu_refuse(&usage, "more than %d views", MU_MOST_VIEWS), 0;
+        return mu_options_view(at, asked->s.views[asked->s.view_count].w) && ++asked->s.view_count;
     case BINS:
         return read_bins(asked, at);
     case TRACER:
@@ -209,13 +186,8 @@ static int measure(mu_asked *asked) {
     return code;
 }
 
-static uint32_t processors(void) {
-    const long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > 256 ? 256 : (uint32_t)count;
-}
-
 int mu_command_surface_measure(int argc, char **argv) {
-    mu_asked asked = {.s = {.m = {1, 0, 0, 1}, .tracer = &mu_tracer_own, .side = 3, .threads = processors()}};
+    mu_asked asked = {.s = {.m = {1, 0, 0, 1}, .tracer = &mu_tracer_own, .side = 3, .threads = mu_processors()}};
     int met;
     mu_options given = mu_options_begin(&usage, argc, argv);
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {

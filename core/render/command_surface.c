@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* command_surface.c: `musurf surface make|measure`, explicit microsurfaces. */
+/* command_surface.c: `musurf surface make|measure|mesh`, explicit microsurfaces. */
 #include "core/render/command_surface.h"
 
 #include <math.h>
@@ -15,11 +15,13 @@
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
-    "surface", "make|measure ...",
+    "surface", "make|measure|mesh ...",
     "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
     no_options,
     "  make      a heightfield with the slopes of a distribution; see musurf surface make --help\n"
     "  measure   facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
+    "  mesh      its triangles under a linear map as a POV-Ray, PLY or OBJ file; see musurf surface mesh "
+    "--help\n"
     "\n"
     "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j "
     "in it is\n"
@@ -77,14 +79,16 @@ uint32_t mu_processors(void) {
 }
 
 int mu_command_surface(int argc, char **argv) {
-    static const char *const known[] = {"make", "measure", NULL};
+    static const char *const known[] = {"make", "measure", "mesh", NULL};
     if (argc > 1 && strcmp(argv[1], "make") == 0) return mu_command_surface_make(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "measure") == 0) return mu_command_surface_measure(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "mesh") == 0) return mu_command_surface_mesh(argc - 1, argv + 1);
     mu_options given = mu_options_begin(&usage, argc, argv);
     const int met = mu_options_next(&given);
     if (met == MU_OPTIONS_HELP || met == MU_OPTIONS_REFUSED) return mu_options_exit(met);
-    if (met != MU_OPTIONS_OPERAND) return mu_refuse(&usage, "make or measure? See musurf surface --help");
+    if (met != MU_OPTIONS_OPERAND)
+        return mu_refuse(&usage, "make, measure or mesh? See musurf surface --help");
     const char *const nearest = mu_nearest(given.value, known);
     return nearest ? mu_refuse(&usage, "there is no \"%.60s\"; did you mean \"%s\"?", given.value, nearest)
-                   : mu_refuse(&usage, "there is no \"%.60s\"; make or measure?", given.value);
+                   : mu_refuse(&usage, "there is no \"%.60s\"; make, measure or mesh?", given.value);
 }

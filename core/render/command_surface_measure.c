@@ -10,10 +10,12 @@
 
 #include "core/render/command_surface.h"
 #include "core/render/json_out.h"
+#include "core/render/output.h"
+#include "core/render/surface_bits.h"
 #include "core/render/surface_file.h"
 #include "core/render/surface_measure.h"
 
-enum { TRANSFORM, VIEW, BINS, TRACER, THREADS, SUBSAMPLES };
+enum { TRANSFORM, VIEW, BINS, TRACER, THREADS, SUBSAMPLES, BITS };
 
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "M = [a c; b d], row by row (default: 1,0,0,1)"},
@@ -23,6 +25,9 @@ static const mu_option options[] = {
     {"tracer", "own|embree", "own: exact, double precision (default); embree: float"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     {"subsamples", "K", "points per facet for G1_projected and bins: a square, 9 to 225 (default: 9)"},
+    {"bits", "FILE.npy",
+     "writes what each view sees as a NumPy array of bytes [view][L, U][i][j]: 1 where the facet's one\n"
+     "point is seen, 0 where it is not or the facet faces away"},
     {NULL, NULL, NULL}};
 
 static const mu_usage usage = {
@@ -48,7 +53,7 @@ static const mu_usage usage = {
 
 typedef struct mu_asked {
     mu_measuring s;
-    const char *file;
+    const char *file, *bits;
     double edges[MU_MOST_BINS + 1];
 } mu_asked;
 
@@ -89,6 +94,9 @@ static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
     case THREADS:
         if (!mu_options_unsigned(at, 1, 256, &number)) return 0;
         asked->s.threads = (uint32_t)number;
+        return 1;
+    case BITS:
+        asked->bits = at->value;
         return 1;
     default:
         if (!mu_options_unsigned(at, 9, 225, &number)) return 0;
@@ -167,12 +175,14 @@ static void show(void *context, uint32_t done, uint32_t all) {
 static int measure(mu_asked *asked) {
     mu_measuring *const s = &asked->s;
     mu_error error = {.text = ""};
+    if (asked->bits && !mu_output_check(asked->bits, &error)) return mu_refuse(&usage, "%s", error.text);
     double *h = mu_surface_read(asked->file, &s->f.n, &error);
     const _Bool terminal = isatty(STDERR_FILENO);
     int code = MU_EXIT_OK;
     s->f.h = h;
     if (terminal) s->progress = show;
-    const _Bool good = h && mu_measure(s, &error);
+    const _Bool good =
+        h && mu_measure(s, &error) && (!asked->bits || mu_surface_bits(asked->bits, s, &error));
     if (terminal) fprintf(stderr, "\r\033[K");
     errno = 0;
     if (!good) {

@@ -89,6 +89,16 @@ class Make(Folder):
             self.assertAlmostEqual(np.sqrt(((20 * shares - 1)**2).mean()), deviation, places=12)
             self.assertLess(deviation, 0.02)
 
+    def test_blocks_that_do_not_shrink(self):
+        """Of 16 x 256 heights, compression leaves some blocks as long as they were; those are stored as they are."""
+        for seed in (0, 1):  # either has such a block
+            file = self.folder / f"{seed}.exr"
+            done = musurf("surface", "make", "--ndf=beckmann", "--alpha=0.3", "--size=256", f"--seed={seed}", "-o", file)
+            self.assertEqual(done.returncode, 0, done.err)
+            heights = exr.read(file)[1]["Y"].astype(float)
+            self.assertAlmostEqual(np.ptp(heights), strict(done.out)["range"], places=9)
+            self.assertEqual(musurf("surface", "measure", file, "--view=1,0,1").returncode, 0)
+
     def test_seed_decides(self):
         made = []
         for name, seed in (("a", 1), ("b", 1), ("c", 2)):

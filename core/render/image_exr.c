@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "core/render/image.h"
+#include "core/render/exr_shrink.h"
 #include "core/render/output.h"
 
 /* Errors come back as codes; this only keeps the library from printing. It must not ask the context for its
@@ -128,6 +129,7 @@ static exr_result_t put_head(exr_context_t exr, const mu_film *film, const mu_fi
 static exr_result_t put_pixels(exr_context_t exr, const mu_film *film, _Bool half, mu_element *block,
                                size_t lines, size_t *clamped) {
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    mu_exr_shrink shrink = {NULL};
     exr_result_t code = EXR_ERR_SUCCESS;
     const size_t width = film->width, stride = width * lines; /* elements from one channel to the next */
     for (size_t y = 0; y < film->height && !code; y += lines) {
@@ -151,6 +153,7 @@ static exr_result_t put_pixels(exr_context_t exr, const mu_film *film, _Bool hal
             channel->user_data_type = index == SAMPLES ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
         }
         if (!y) code = exr_encoding_choose_default_routines(exr, 0, &pipe);
+        if (!y && !code) mu_exr_shrink_use(&pipe, &shrink);
         if (!code) code = exr_encoding_run(exr, 0, &pipe);
     }
     exr_encoding_destroy(exr, &pipe);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/render/exr_shrink.h"
 #include "core/render/output.h"
 
 static void keep_quiet(exr_const_context_t context, exr_result_t code, const char *message) {
@@ -55,6 +56,7 @@ static exr_result_t put_head(exr_context_t exr, uint32_t n, const mu_surface_inf
 
 static exr_result_t put_heights(exr_context_t exr, const mu_heightfield *f, float *block) {
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    mu_exr_shrink shrink = {NULL};
     exr_result_t code = EXR_ERR_SUCCESS;
     for (uint32_t i = 0; i < f->n && !code;) {
         exr_chunk_info_t chunk;
@@ -71,6 +73,7 @@ static exr_result_t put_heights(exr_context_t exr, const mu_heightfield *f, floa
         pipe.channels[0].user_bytes_per_element = sizeof(float);
         pipe.channels[0].user_data_type = EXR_PIXEL_FLOAT;
         if (!i) code = exr_encoding_choose_default_routines(exr, 0, &pipe);
+        if (!i && !code) mu_exr_shrink_use(&pipe, &shrink);
         if (!code) code = exr_encoding_run(exr, 0, &pipe);
         i += (uint32_t)chunk.height;
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* command_surface.c: `musurf surface make|measure|mesh`, explicit microsurfaces. */
+/* command_surface.c: `musurf surface ...`, explicit microsurfaces. */
 #include "core/render/command_surface.h"
 
 #include <math.h>
@@ -15,12 +15,14 @@
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
-    "surface", "make|measure|mesh ...",
+    "surface", "make|measure|mesh|statistics ...",
     "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
     no_options,
-    "  make      a heightfield with the slopes of a distribution; see musurf surface make --help\n"
-    "  measure   facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
-    "  mesh      its triangles under a linear map as a POV-Ray, PLY or OBJ file; see musurf surface mesh "
+    "  make        a heightfield with the slopes of a distribution; see musurf surface make --help\n"
+    "  measure     facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
+    "  mesh        its triangles under a linear map as a POV-Ray, PLY or OBJ file; see musurf surface mesh "
+    "--help\n"
+    "  statistics  slopes, normals, masking, visible normals, reflections; see musurf surface statistics "
     "--help\n"
     "\n"
     "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j "
@@ -78,17 +80,32 @@ uint32_t mu_processors(void) {
     return count < 1 ? 1 : count > 256 ? 256 : (uint32_t)count;
 }
 
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} commands[] = {
+    {"make", mu_command_surface_make},
+    {"measure", mu_command_surface_measure},
+    {"mesh", mu_command_surface_mesh},
+    {"statistics", mu_command_surface_statistics},
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
 int mu_command_surface(int argc, char **argv) {
-    static const char *const known[] = {"make", "measure", "mesh", NULL};
-    if (argc > 1 && strcmp(argv[1], "make") == 0) return mu_command_surface_make(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "measure") == 0) return mu_command_surface_measure(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "mesh") == 0) return mu_command_surface_mesh(argc - 1, argv + 1);
+    const char *known[COMMANDS + 1] = {NULL};
+    char list[256] = "";
+    for (int k = 0; k < COMMANDS; k++) {
+        if (argc > 1 && strcmp(argv[1], commands[k].name) == 0) return commands[k].run(argc - 1, argv + 1);
+        const size_t length = strlen(list);
+        snprintf(list + length, sizeof list - length, "%s%s", k ? (k < COMMANDS - 1 ? ", " : " or ") : "",
+                 commands[k].name);
+        known[k] = commands[k].name;
+    }
     mu_options given = mu_options_begin(&usage, argc, argv);
     const int met = mu_options_next(&given);
     if (met == MU_OPTIONS_HELP || met == MU_OPTIONS_REFUSED) return mu_options_exit(met);
-    if (met != MU_OPTIONS_OPERAND)
-        return mu_refuse(&usage, "make, measure or mesh? See musurf surface --help");
+    if (met != MU_OPTIONS_OPERAND) return mu_refuse(&usage, "%s? See musurf surface --help", list);
     const char *const nearest = mu_nearest(given.value, known);
     return nearest ? mu_refuse(&usage, "there is no \"%.60s\"; did you mean \"%s\"?", given.value, nearest)
-                   : mu_refuse(&usage, "there is no \"%.60s\"; make, measure or mesh?", given.value);
+                   : mu_refuse(&usage, "there is no \"%.60s\"; %s?", given.value, list);
 }

@@ -80,6 +80,14 @@ void mu_json_numbers(mu_json *json, const char *key, const double *values, size_
     put(json, "]", 1);
 }
 
+void mu_json_object(mu_json *json, const char *key, const mu_json *object) {
+    if (object->no_memory) json->no_memory = 1;
+    if (json->no_memory) return;
+    put_key(json, key);
+    put(json, object->text, object->length);
+    put(json, "}", 1);
+}
+
 void mu_json_list_begin(mu_json *json, const char *key) {
     put_key(json, key);
     put(json, "[", 1);

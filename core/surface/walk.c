@@ -15,6 +15,8 @@ _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], doub
     s->climb = w[2] / most / (s->along[0] * s->along[0] + s->along[1] * s->along[1]);
 
     /* Two edges have their ends on either side; the ray leaves by the one that it meets later. */
+    const double climb = s->climb;
+    s->climb = 1; /* so that `rise` is the distance, whichever way the ray goes */
     mu_stepper best = *s;
     _Bool found = 0;
     for (int k = 0; k < 3; k++) {
@@ -36,6 +38,8 @@ _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], doub
         found = 1;
     }
     *s = best;
+    s->climb = climb;
+    s->edge.rise *= climb;
     return found;
 }
 

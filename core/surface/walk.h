@@ -54,7 +54,7 @@ static inline void mu_stepper_meet(mu_stepper *s) {
 
 /*
  * Stands where the ray from (u, v), inside the lower or upper triangle of its cell, leaves that triangle along w. False
- * if it never does, w being vertical. w[2] > 0; w may have any length. det M != 0.
+ * if it never does, w being vertical. w may have any length and go up or down. det M != 0.
  */
 _Bool mu_stepper_begin(mu_stepper *s, const double m[4], const double w[3], double u, double v, int upper);
 

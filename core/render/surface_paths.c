@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* surface_paths.c: paths of light from the points that a view sees, followed on all threads, added up in one order. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/render/surface_rows.h"
+#include "core/render/surface_statistics.h"
+
+enum { ROWS = 64 }; /* followed before they are added up */
+
+static const double pi = 3.14159265358979323846;
+
+/* What remains of a path once F is known. */
+typedef struct mu_followed {
+    double weight,
+        left[3]; /* (v.m) A / ((v.n) A_macro), in facets; products of F; weight 0: nothing is seen */
+    double normal[3], out[3];
+    uint8_t end, count;
+} mu_followed;
+
+typedef struct mu_following {
+    const mu_gathering *g;
+    const mu_mirrors *mirrors;
+    const mu_seen *seen;
+    int upper;
+    double point[2];
+    uint32_t first;
+    mu_followed *paths; /* ROWS x n */
+} mu_following;
+
+static void follow_row(void *context, uint32_t row) {
+    const mu_following *t = context;
+    const mu_gathering *g = t->g;
+    const uint32_t n = t->mirrors->f.n, i = t->first + row;
+    for (uint32_t j = 0; j < n; j++) {
+        mu_followed *p = &t->paths[(size_t)row * n + j];
+        mu_mirror_path path;
+        double r[3];
+        p->weight = 0;
+        if (!t->seen->visible[(size_t)i * n + j]) continue;
+        const mu_spot spot = {i, j, t->upper, t->point[0], t->point[1]};
+        const double weight =
+            mu_facet_mirror(&t->mirrors->f, g->m, t->seen->unit, i, j, t->upper, p->normal, r);
+        mu_mirror_follow(t->mirrors, &spot, t->seen->unit, g->bounces, &path);
+        p->weight = weight * 2 * n * n; /* of one facet: its own macro area, not the surface's */
+        p->end = (uint8_t)path.end, p->count = (uint8_t)path.count;
+        for (int k = 0; k < 3; k++) p->out[k] = path.out[k];
+        for (int c = 0; c < mu_gathering_channels(g); c++) {
+            p->left[c] = 1;
+            for (uint32_t k = 0; k < path.count; k++)
+                p->left[c] *= mu_reflectance_at(&g->reflectance, c, path.cosine[k]);
+        }
+    }
+}
+
+static double radiance(const mu_lamp *lamp, const double r[3]) {
+    double chord = 0; /* 2 sin of half the angle between: no cancellation for narrow lamps */
+    for (int k = 0; k < 3; k++) chord += (r[k] - lamp->l[k]) * (r[k] - lamp->l[k]);
+    const double most = 2 * sin(lamp->radius / 2), sine = sin(lamp->radius);
+    return chord <= most * most ? 1 / (pi * sine * sine * lamp->l[2]) : 0;
+}
+
+static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) {
+    static const int cell[] = {[MU_PATH_ESCAPED] = MU_END_ESCAPED,
+                               [MU_PATH_OVER_LIMIT] = MU_END_OVER_LIMIT,
+                               [MU_PATH_LOST] = MU_END_LOST};
+    const double share = p->weight / ((double)g->side * g->side);
+    const size_t bins = mu_directions_count(&g->bins) + 1;
+    for (int c = 0; c < mu_gathering_channels(g); c++) {
+        const double light = share * p->left[c];
+        mu_ratios_add(&s->ends[c], unit, MU_END_PROJECTED, share);
+        mu_ratios_add(&s->ends[c], unit, MU_END_ABSORBED, share * (1 - p->left[c]));
+        mu_ratios_add(&s->ends[c], unit, (size_t)cell[p->end], light);
+        if (p->end != MU_PATH_ESCAPED) continue;
+        mu_ratios_add(&s->ends[c], unit, MU_ENDS + p->count - 1u, light);
+        mu_ratios_add(&s->directions[c], unit, (p->count - 1u) * bins + mu_directions_bin(&g->bins, p->out),
+                      light);
+        for (uint32_t k = 0; k < g->lamp_count; k++) {
+            const double shown = light * radiance(&g->lamps[k], p->out);
+            if (!(shown > 0)) continue;
+            if (p->count == 1) mu_ratios_add(&s->lamps[c], unit, 2 * (size_t)k, shown);
+            mu_ratios_add(&s->lamps[c], unit, 2 * (size_t)k + 1, shown);
+        }
+    }
+    if (p->end != MU_PATH_ESCAPED || p->count != 1) return;
+    mu_group *group = &s->groups[mu_directions_bin(&g->finer, p->normal)];
+    for (int k = 0; k < 3; k++) group->normal[k] += share * p->normal[k];
+    group->weight += share;
+}
+
+_Bool mu_gathering_paths(mu_gathering *g, uint32_t file, const mu_mirrors *mirrors, mu_seen *seen, int upper,
+                         const double point[2], mu_error *error) {
+    const uint32_t n = mirrors->f.n;
+    mu_following t = {g, mirrors, seen, upper, {point[0], point[1]}, 0, NULL};
+    t.paths = malloc((size_t)ROWS * n * sizeof *t.paths);
+    if (!t.paths) return mu_fail(error, "not enough memory to follow paths");
+    for (t.first = 0; t.first < n; t.first += ROWS) {
+        const uint32_t rows = n - t.first < ROWS ? n - t.first : ROWS;
+        mu_rows(rows, g->threads, follow_row, &t);
+        for (uint32_t row = 0; row < rows; row++)
+            for (uint32_t j = 0; j < n; j++) {
+                const mu_followed *p = &t.paths[(size_t)row * n + j];
+                if (p->weight > 0) add(g, seen, mu_gathering_unit(g, file, n, t.first + row, j), p);
+            }
+    }
+    free(t.paths);
+    return 1;
+}
+
+typedef struct mu_grouped {
+    const mu_gathering *g;
+    const mu_lamp *lamp;
+    int channel;
+} mu_grouped;
+
+static double fresnel_of(void *context, double cosine) {
+    const mu_grouped *at = context;
+    return mu_reflectance_at(&at->g->reflectance, at->channel, fmin(cosine, 1));
+}
+
+static double radiance_of(void *context, const double r[3]) {
+    return radiance(((const mu_grouped *)context)->lamp, r);
+}
+
+double mu_gathering_grouped(const mu_gathering *g, const mu_seen *seen, uint32_t lamp, int channel) {
+    mu_grouped at = {g, &g->lamps[lamp], channel};
+    const mu_lighting lighting = {fresnel_of, radiance_of, &at};
+    return mu_reflect_groups(seen->groups, mu_directions_count(&g->finer) + 1, seen->unit, &lighting) /
+           g->total;
+}

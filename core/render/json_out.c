@@ -73,8 +73,9 @@ void mu_json_number(mu_json *json, const char *key, double value) {
 
 void mu_json_numbers(mu_json *json, const char *key, const double *values, size_t count) {
     put_key(json, key);
+    put(json, "[", 1);
     for (size_t i = 0; i < count; i++) {
-        put(json, i ? ", " : "[", i ? 2 : 1);
+        if (i) put(json, ", ", 2);
         put_number(json, values[i]);
     }
     put(json, "]", 1);

@@ -53,14 +53,35 @@ static _Bool cut(const polygon *q, const double n[2], double offset, polygon *ou
 /* Slivers that rounding leaves at shared edges: all that fit into PIECES together are below 1e-11 of the triangle. */
 static const double sliver = 1e-14;
 
-/* Takes the shadow away from every piece: what lies outside one of its edges after the other is kept. */
+/* Whether they share an area; *good becomes false if there are too many corners. */
+static _Bool overlap(const polygon *piece, const polygon *shadow, _Bool *good) {
+    polygon rest = *piece;
+    for (int e = 0; e < shadow->count && rest.count >= 3; e++) {
+        const double *a = shadow->p[e], *b = shadow->p[(e + 1) % shadow->count];
+        const double inward[2] = {a[1] - b[1], b[0] - a[0]};
+        polygon inside;
+        if (!cut(&rest, inward, inward[0] * a[0] + inward[1] * a[1], &inside)) {
+            *good = 0;
+            return 0;
+        }
+        rest = inside;
+    }
+    return rest.count >= 3 && area(&rest) > sliver;
+}
+
+/* Takes the shadow away from every piece that it falls on: what lies outside one of its edges after the other is kept. */
 static _Bool subtract(pieces *all, const polygon *shadow) {
     const int before = all->count;
     int kept = 0;
     pieces *const list = all;
     for (int k = 0; k < before; k++) {
         polygon rest = list->list[k];
-        _Bool first = 1; /* the first part that is kept may take the old piece's place */
+        _Bool first = 1, good = 1;            /* the first part that is kept may take the old piece's place */
+        if (!overlap(&rest, shadow, &good)) { /* not to be cut into parts for nothing */
+            if (!good) return 0;
+            list->list[kept++] = rest;
+            continue;
+        }
         for (int e = 0; e < shadow->count && rest.count >= 3; e++) {
             const double *a = shadow->p[e], *b = shadow->p[(e + 1) % shadow->count];
             const double inward[2] = {a[1] - b[1], b[0] - a[0]}, outward[2] = {-inward[0], -inward[1]};

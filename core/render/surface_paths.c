@@ -67,9 +67,9 @@ static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) 
                                [MU_PATH_LOST] = MU_END_LOST};
     const double share = p->weight / ((double)g->side * g->side);
     const size_t bins = mu_directions_count(&g->bins) + 1;
+    s->light[unit] += share;
     for (int c = 0; c < mu_gathering_channels(g); c++) {
         const double light = share * p->left[c];
-        mu_ratios_add(&s->ends[c], unit, MU_END_PROJECTED, share);
         mu_ratios_add(&s->ends[c], unit, MU_END_ABSORBED, share * (1 - p->left[c]));
         mu_ratios_add(&s->ends[c], unit, (size_t)cell[p->end], light);
         if (p->end != MU_PATH_ESCAPED) continue;
@@ -126,6 +126,7 @@ static double radiance_of(void *context, const double r[3]) {
 double mu_gathering_grouped(const mu_gathering *g, const mu_seen *seen, uint32_t lamp, int channel) {
     mu_grouped at = {g, &g->lamps[lamp], channel};
     const mu_lighting lighting = {fresnel_of, radiance_of, &at};
-    return mu_reflect_groups(seen->groups, mu_directions_count(&g->finer) + 1, seen->unit, &lighting) /
-           g->total;
+    double light = 0;
+    for (size_t k = 0; k < g->units; k++) light += seen->light[k];
+    return mu_reflect_groups(seen->groups, mu_directions_count(&g->finer) + 1, seen->unit, &lighting) / light;
 }

@@ -87,7 +87,7 @@ static void put_normals(mu_pages *p, mu_json *json) {
 static void put_reflection(mu_pages *p, const mu_seen *s, int c, mu_json *json, mu_json *inner) {
     const mu_gathering *g = p->g;
     const size_t bins = mu_directions_count(&g->bins);
-    static const char *const names[MU_ENDS] = {"projected_area", "escaped", "over_limit", "lost", "absorbed"};
+    static const char *const names[MU_ENDS] = {"escaped", "over_limit", "lost", "absorbed"};
     mu_json_begin(json);
     for (int k = 0; k < MU_ENDS; k++) put_one(json, names[k], &s->ends[c], (size_t)k);
     mu_json_list_begin(json, "orders");
@@ -122,9 +122,7 @@ static void put_view(mu_pages *p, const mu_seen *s, mu_json *json, mu_json *one,
     put_many(p, json, "facing", &s->facing, 0, bins, NULL);
     put_many(p, json, "G1", &s->masking, 0, bins, NULL);
     put_many(p, json, "Dv", &s->normals, 0, bins, solid_angles(p));
-    double area = 0;
-    for (size_t k = 0; k <= bins; k++) area += mu_ratios_get(&s->normals, k).value;
-    mu_json_number(json, "projected_area", area);
+    put_one(json, "projected_area", &s->identity, 0);
     if (!g->bounces) return;
     mu_json_list_begin(json, "reflection");
     for (int c = 0; c < mu_gathering_channels(g); c++) {

@@ -15,11 +15,14 @@ static _Bool make_view(mu_gathering *g, mu_seen *s) {
     _Bool good = mu_ratios_make(&s->facing, g->units, bins, NULL);
     good = mu_ratios_make(&s->masking, g->units, bins, NULL) && good;
     good = mu_ratios_make(&s->projected, g->units, 1, NULL) && good;
+    good = mu_ratios_make(&s->identity, g->units, 1, g->macro) && good;
     good = mu_ratios_make(&s->normals, g->units, bins, g->macro) && good;
+    s->light = calloc(g->units, sizeof *s->light);
+    if (!s->light) return 0;
     for (int c = 0; c < mu_gathering_channels(g); c++) {
-        good = mu_ratios_make(&s->ends[c], g->units, MU_ENDS + g->bounces, g->macro) && good;
-        good = mu_ratios_make(&s->directions[c], g->units, g->bounces * bins, g->macro) && good;
-        good = mu_ratios_make(&s->lamps[c], g->units, 2 * (size_t)g->lamp_count, g->macro) && good;
+        good = mu_ratios_make(&s->ends[c], g->units, MU_ENDS + g->bounces, s->light) && good;
+        good = mu_ratios_make(&s->directions[c], g->units, g->bounces * bins, s->light) && good;
+        good = mu_ratios_make(&s->lamps[c], g->units, 2 * (size_t)g->lamp_count, s->light) && good;
     }
     s->groups = calloc(mu_directions_count(&g->finer) + 1, sizeof *s->groups);
     return good && s->groups;
@@ -56,10 +59,10 @@ void mu_gathering_free(mu_gathering *g) {
     for (uint32_t k = 0; k < g->view_count; k++) {
         mu_seen *s = &g->views[k];
         mu_ratios_free(&s->facing), mu_ratios_free(&s->masking), mu_ratios_free(&s->projected);
-        mu_ratios_free(&s->normals);
+        mu_ratios_free(&s->identity), mu_ratios_free(&s->normals);
         for (int c = 0; c < 3; c++)
             mu_ratios_free(&s->ends[c]), mu_ratios_free(&s->directions[c]), mu_ratios_free(&s->lamps[c]);
-        free(s->groups), free(s->visible);
+        free(s->light), free(s->groups), free(s->visible);
     }
     for (uint32_t k = 0; g->pairs && k < g->pair_count; k++) {
         mu_seen_pair *p = &g->pairs[k];
@@ -116,6 +119,7 @@ static void add_up(mu_gathering *g, uint32_t file, const mu_heightfield *f, int 
                 mu_ratios_add_both(&s->masking, unit, bin, area * seen, area);
                 if (!(facing[k] > 0)) continue;
                 mu_ratios_add_both(&s->projected, unit, 0, facing[k] * seen, facing[k]);
+                mu_ratios_add(&s->identity, unit, 0, facing[k] * seen / (s->w[2] * macro));
                 mu_ratios_add(&s->normals, unit, bin, facing[k] * seen / (s->w[2] * macro));
             }
             for (uint32_t k = 0; k < g->pair_count; k++) {

@@ -12,9 +12,11 @@
  * that lie in it. From each visible point the mirrors' path is followed (bounce.h), with the weight
  *     (v.m) A / ((v.n) A_macro side^2) F(c_1) ... F(c_k),
  * and what escapes after k reflections is added up per bin of its direction: 1/sr. The weights at k = 0 sum to the
- * projected area over the plane's own, which is 1 but for the finite number of points. A light is a disc about a
- * direction l, within `radius` of it, of the radiance 1 / (pi sin^2 radius cos theta_l), whose irradiance is 1: then
- * Eq. (11f) gives the BRDF's mean over the disc, weighted by cosine.
+ * projected area over the plane's own, which is 1 but for the finite number of points; as in Eq. (11a), before it is
+ * simplified, reflection is divided by this sum. Of blocks that matters much: one that leans toward the view shows more
+ * than its share, but what becomes of its light does not depend on that. A light is a disc about a direction l, within
+ * `radius` of it, of the radiance 1 / (pi sin^2 radius cos theta_l), whose irradiance is 1: then Eq. (11f) gives the
+ * BRDF's mean over the disc, weighted by cosine.
  *
  * All sums are kept per unit (ratio.h): each of several files is one, or else each of 4 x 4 blocks of a single surface.
  */
@@ -29,8 +31,8 @@
 
 enum { MU_STATISTICS_VIEWS = 16, MU_STATISTICS_LIGHTS = 16, MU_STATISTICS_BLOCKS = 16, MU_GROUPS_FINER = 8 };
 
-/* What becomes of the light of a view, in the order of the cells of mu_seen.ends; all in units of the view's own. */
-enum { MU_END_PROJECTED, MU_END_ESCAPED, MU_END_OVER_LIMIT, MU_END_LOST, MU_END_ABSORBED, MU_ENDS };
+/* What becomes of the light of a view, in the order of the cells of mu_seen.ends: shares of it. */
+enum { MU_END_ESCAPED, MU_END_OVER_LIMIT, MU_END_LOST, MU_END_ABSORBED, MU_ENDS };
 /* Cells of mu_gathering.slopes after its histogram. */
 enum { MU_SLOPE_OUTSIDE, MU_SLOPE_X, MU_SLOPE_Y, MU_SLOPE_XX, MU_SLOPE_XY, MU_SLOPE_YY, MU_SLOPE_MORE };
 
@@ -42,10 +44,12 @@ typedef struct mu_seen {
     double w[3], unit[3];      /* as asked but for a power of two; as a unit vector */
     mu_ratios facing, masking; /* per bin of normals: area that faces w, that w sees, over all area */
     mu_ratios projected;       /* one cell: projected area that w sees over that which faces w */
-    mu_ratios normals;         /* per bin: Dv times the solid angle */
-    mu_ratios ends[3];         /* per colour: MU_ENDS shares, then the albedo of each order */
-    mu_ratios directions[3];   /* per colour: per order and bin, shares */
-    mu_ratios lamps[3];        /* per colour, two cells a light: f of one reflection, of all */
+    mu_ratios identity;        /* one cell: over the plane's own */
+    double *light;     /* per unit: what the identity's adds up to, the bottom of what follows but normals */
+    mu_ratios normals; /* per bin: Dv times the solid angle */
+    mu_ratios ends[3]; /* per colour: MU_ENDS shares, then the albedo of each order */
+    mu_ratios directions[3]; /* per colour: per order and bin, shares */
+    mu_ratios lamps[3];      /* per colour, two cells a light: f of one reflection, of all */
     mu_group *groups; /* MU_GROUPS_FINER as many rings and sectors; what escapes after one reflection */
     uint8_t *visible; /* n * n, of the point at hand */
 } mu_seen;

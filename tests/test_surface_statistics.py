@@ -44,7 +44,7 @@ def solid_angles():
 class AgainstNumpy(Folder):
     """Every number of a small surface under a mirroring M once more; sums of doubles differ by rounding alone, which
     1e-12 leaves room for, and no facet lies so near to the border of a bin that rounding moves it."""
-    N = 16
+    N = 12
 
     def setUp(self):
         super().setUp()

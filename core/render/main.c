@@ -23,7 +23,7 @@ static const struct {
     {"sample", mu_command_sample, "directions drawn from a material"},
     {"render", mu_command_render, "an image of a scene file"},
     {"check", mu_command_check, "the numerical validation: random materials, and those of scenes"},
-    {"surface", mu_command_surface, "explicit microsurfaces: make heightfields, measure what is seen of them, write meshes"},
+    {"surface", mu_command_surface, "explicit microsurfaces: make heightfields, measure what theory says of them, write meshes"},
     {"info", mu_command_info, "distributions, parameters, build"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

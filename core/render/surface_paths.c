@@ -83,7 +83,7 @@ static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) 
             mu_ratios_add(&s->lamps[c], unit, 2 * (size_t)k + 1, shown);
         }
     }
-    if (p->end != MU_PATH_ESCAPED || p->count != 1) return;
+    if (!s->groups || p->end != MU_PATH_ESCAPED || p->count != 1) return;
     mu_group *group = &s->groups[mu_directions_bin(&g->finer, p->normal)];
     for (int k = 0; k < 3; k++) group->normal[k] += share * p->normal[k];
     group->weight += share;

@@ -24,16 +24,18 @@ static _Bool make_view(mu_gathering *g, mu_seen *s) {
         good = mu_ratios_make(&s->directions[c], g->units, g->bounces * bins, s->light) && good;
         good = mu_ratios_make(&s->lamps[c], g->units, 2 * (size_t)g->lamp_count, s->light) && good;
     }
-    s->groups = calloc(mu_directions_count(&g->finer) + 1, sizeof *s->groups);
-    return good && s->groups;
+    if (g->lamp_count) s->groups = calloc(mu_directions_count(&g->finer) + 1, sizeof *s->groups);
+    return good && (s->groups || !g->lamp_count);
 }
 
 _Bool mu_gathering_begin(mu_gathering *g, mu_error *error) {
     const size_t bins = mu_directions_count(&g->bins) + 1;
     g->units = g->file_count > 1 ? g->file_count : MU_STATISTICS_BLOCKS;
     g->pair_count = g->view_count * (g->view_count - 1) / 2;
-    g->finer = (mu_directions){MU_GROUPS_FINER * g->bins.rings, MU_GROUPS_FINER * g->bins.sectors,
-                               g->bins.theta_most};
+    const uint32_t rings = MU_GROUPS_FINER * g->bins.rings, sectors = MU_GROUPS_FINER * g->bins.sectors;
+    g->finer =
+        (mu_directions){rings < MU_GROUP_RINGS ? rings : MU_GROUP_RINGS,
+                        sectors < 4 * MU_GROUP_RINGS ? sectors : 4 * MU_GROUP_RINGS, g->bins.theta_most};
     g->macro = calloc(g->units, sizeof *g->macro);
     g->facets = calloc(bins, sizeof *g->facets);
     g->pairs = calloc(g->pair_count + 1, sizeof *g->pairs);

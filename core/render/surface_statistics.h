@@ -29,7 +29,13 @@
 #include "core/surface/reflect.h"
 #include "core/surface/reflectance.h"
 
-enum { MU_STATISTICS_VIEWS = 16, MU_STATISTICS_LIGHTS = 16, MU_STATISTICS_BLOCKS = 16, MU_GROUPS_FINER = 8 };
+enum {
+    MU_STATISTICS_VIEWS = 16,
+    MU_STATISTICS_LIGHTS = 16,
+    MU_STATISTICS_BLOCKS = 16,
+    MU_GROUPS_FINER = 8,
+    MU_GROUP_RINGS = 360
+};
 
 /* What becomes of the light of a view, in the order of the cells of mu_seen.ends: shares of it. */
 enum { MU_END_ESCAPED, MU_END_OVER_LIMIT, MU_END_LOST, MU_END_ABSORBED, MU_ENDS };
@@ -50,8 +56,8 @@ typedef struct mu_seen {
     mu_ratios ends[3]; /* per colour: MU_ENDS shares, then the albedo of each order */
     mu_ratios directions[3]; /* per colour: per order and bin, shares */
     mu_ratios lamps[3];      /* per colour, two cells a light: f of one reflection, of all */
-    mu_group *groups; /* MU_GROUPS_FINER as many rings and sectors; what escapes after one reflection */
-    uint8_t *visible; /* n * n, of the point at hand */
+    mu_group *groups;        /* of `finer`, if there are lights; what escapes after one reflection */
+    uint8_t *visible;        /* n * n, of the point at hand */
 } mu_seen;
 
 typedef struct mu_seen_pair {
@@ -65,7 +71,7 @@ typedef struct mu_gathering {
     double m[4];
     const mu_tracer *tracer;
     uint32_t side, threads, bounces; /* bounces 0: no reflection */
-    mu_directions bins, finer;
+    mu_directions bins;
     uint32_t view_count, lamp_count, file_count, slope_cells;
     double slope_bounds[4]; /* x_min, x_max, y_min, y_max; all 0: from the first surface */
     mu_lamp lamps[MU_STATISTICS_LIGHTS];
@@ -73,6 +79,8 @@ typedef struct mu_gathering {
     void (*progress)(void *context, double done);
     void *context;
     /* gathered */
+    mu_directions
+        finer; /* MU_GROUPS_FINER times the rings and sectors, at most MU_GROUP_RINGS and four times that */
     mu_seen views[MU_STATISTICS_VIEWS];
     mu_seen_pair *pairs;
     uint32_t pair_count;

@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/bsdf/padded.h"
 #include "plugin/musurf_compiled.h"
-
-enum { ALIGNMENT = 64 };
 
 static int is_mirror(const mu_definition *d) {
     return d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG && d->ndf != MU_TABULATED);
@@ -83,12 +82,8 @@ static void name_plan(musurf_material *m, const char *surface) {
 
 static void *obtain(const musurf_host *host, size_t bytes) {
     if (host && COVERS(host, release) && host->allocate)
-        return host->allocate(host->context, bytes, ALIGNMENT);
-    return aligned_alloc(ALIGNMENT, bytes);
-}
-
-static size_t padded(size_t bytes) {
-    return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+        return host->allocate(host->context, bytes, MU_ALIGNMENT);
+    return aligned_alloc(MU_ALIGNMENT, bytes);
 }
 
 static musurf_result compile(const musurf_host *host, const musurf_setting *settings, size_t count,

@@ -17,6 +17,7 @@
  */
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/multiple.h"
+#include "core/bsdf/snell.h"
 
 #if MU_REAL_BITS == 24
 
@@ -36,15 +37,6 @@ typedef struct ray {
     int transmission;
 } ray;
 
-/* The direction that m refracts wo into, turned over to the side of wo; 0 in total reflection. */
-static int refracted(const closure *c, const double m[3], double facing, float i[3]) {
-    const double eta = (double)c->eta, inside = eta * eta - (1 - facing) * (1 + facing);
-    if (!(inside > 0)) return 0;
-    const double along = (eta - 1) * (eta + 1) / (sqrt(inside) + facing);
-    for (int k = 0; k < 3; k++) i[k] = (float)(((double)c->wo[k] + along * m[k]) / eta);
-    return i[2] > 0;
-}
-
 static double integrand(const ray *l, double r) {
     const closure *c = l->c;
     const double m[3] = {l->level[0] + r * l->along[0], l->level[1] + r * l->along[1], 1};
@@ -57,8 +49,8 @@ static double integrand(const ray *l, double r) {
     double passed = 0;
     if (l->transmission) {
         F = MU(fresnel_dielectric)(c->eta, fminf((float)facing, 1));
-        if (F < 1 && refracted(c, unit, facing, i))
-            passed += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
+        (void)refract(c->eta, c->wo, normal, (float)facing, i);
+        if (F < 1 && i[2] > 0) passed += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
     }
     for (int k = 0; k < 3; k++) i[k] = (float)(2 * facing * unit[k] - (double)c->wo[k]);
     if (i[2] > 0) passed += (double)(F * c->kernel->shadowing(c, i, 0));

@@ -44,13 +44,12 @@ static inline void cap_accepted(const base *b, real (*density_of)(const base *, 
     if (w[2] < 0) {
         const real r2 = flat_square(w), edge[3] = {-w[2], 0, sqrt(r2)};
         if (edge[0] * edge[0] > turn * r2)
-            bound = density_of(b, edge, edge[0] * edge[0] + r2) *
-                    R(1 + 64 * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON));
+            bound = density_of(b, edge, edge[0] * edge[0] + r2) * R(1 + 64 * REAL_EPSILON);
         tries = bound > 0 ? FROM_BELOW : 0;
     }
     for (int i = 0; i < tries; i++) {
         cap_visible(w, 1, u0, u1, n);
-        if (accept * bound < density_of(b, n, n[0] * n[0] + n[1] * n[1] + n[2] * n[2])) return;
+        if (accept * bound < density_of(b, n, dot(n, n))) return;
         u0 = random_next(&more), u1 = random_next(&more), accept = random_next(&more);
     }
     n[0] = n[1] = n[2] = 0;
@@ -58,7 +57,7 @@ static inline void cap_accepted(const base *b, real (*density_of)(const base *, 
 
 /* The same from unit roughness, its reflections no deeper than k w.z below the horizon (bounded.h); k = 1: all of them. */
 static inline void cap_visible_bounded(const real w[3], real k, real u0, real u1, real n[3]) {
-    const real inverse = 1 / sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), z = w[2] * inverse;
+    const real inverse = 1 / sqrt(dot(w, w)), z = w[2] * inverse;
     const real o = u0 * (1 + k * z), sine = sqrt(o * (2 - o)), phi = R(2 * PI) * u1;
     n[0] = sine * cos(phi) + w[0] * inverse;
     n[1] = sine * sin(phi) + w[1] * inverse;

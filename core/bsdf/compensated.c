@@ -114,8 +114,7 @@ void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sam
         sample_lobe(full, c, moved, out);
         return;
     }
-    moved[2] = smaller((u[2] - chosen) / (1 - chosen),
-                       1 - R(0.5) * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON));
+    moved[2] = smaller((u[2] - chosen) / (1 - chosen), 1 - R(0.5) * REAL_EPSILON);
     full->sample(c, sampler, moved, out);
     if (out->rejected) return;
     if (out->delta) {

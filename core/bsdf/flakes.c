@@ -22,19 +22,12 @@
 #include "core/bsdf/flakes.h"
 
 #include "core/bsdf/real.h"
+#include "core/bsdf/splitmix.h"
 
 #if MU_REAL_BITS == 53
 
 static const double WORK = 2048; /* cells, in the mean over the region's offset; a (u, v) cell costs 2 more */
 static const double SMOOTH = 1e6; /* flakes: their spread is below 1e-3, and the ratio is 1 */
-static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
-
-/* SplitMix64's finaliser (Steele et al. 2014), a bijection. */
-static inline uint64_t mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
 
 /* Two uniforms of 32 bits; never 0 or 1. */
 static inline double high(uint64_t bits) {
@@ -45,7 +38,7 @@ static inline double low(uint64_t bits) {
 }
 
 mu_flakes mu_flakes_make(double density, double cone, uint64_t seed) {
-    mu_flakes f = {density > 0 && density <= DBL_MAX ? density : 0, 1, 1, mix(seed + GOLDEN)};
+    mu_flakes f = {density > 0 && density <= DBL_MAX ? density : 0, 1, 1, mu_mix(seed + MU_GOLDEN)};
     cone = cone > 1e-6 ? cone : 1e-6;
     while (f.rings < 2 / cone) f.rings *= 2;
     if (f.density > 0) f.side = f.rings / sqrt(f.density);
@@ -119,9 +112,9 @@ static int64_t count_cell(const area *at, const kinds *box, int within, const do
                       end = last - first < sectors ? last : first + 2 * k;
         for (int64_t turn = first; turn <= end; turn++) {
             const uint64_t state =
-                seed + 2 * GOLDEN * (uint64_t)(k * k + (turn < sectors ? turn : turn - sectors));
+                seed + 2 * MU_GOLDEN * (uint64_t)(k * k + (turn < sectors ? turn : turn - sectors));
             if (!within) {
-                const uint64_t bits = mix(state);
+                const uint64_t bits = mu_mix(state);
                 const double u = high(bits), v = low(bits), s = s0 + (g00 * u + g01 * v),
                              t = t0 + (g10 * u + g11 * v);
                 if (!((s >= -1) & (s < 1) & (t >= -1) & (t < 1))) continue;
@@ -129,7 +122,7 @@ static int64_t count_cell(const area *at, const kinds *box, int within, const do
             if (whole_ring && turn > first && turn < last) {
                 count++;
             } else {
-                const uint64_t bits = mix(state + GOLDEN);
+                const uint64_t bits = mu_mix(state + MU_GOLDEN);
                 const double p = p0 + dp * high(bits), q = (double)turn + low(bits);
                 count += (p >= box->p[0]) & (p < box->p[1]) & (((q >= q0) & (q < q1)) | (q + dp < q1));
             }
@@ -150,7 +143,7 @@ static int64_t count_cells(const area *at, const kinds *box, uint64_t seed) {
                 const double reach = (1 + fabs(at->g[i][1]) / 2) / fabs(at->g[i][0]);
                 from = larger(middle - reach, from), to = smaller(middle + reach, to); /* NaN: stays */
             }
-        const uint64_t row = mix(seed + (uint64_t)(int64_t)(at->origin[1] + j));
+        const uint64_t row = mu_mix(seed + (uint64_t)(int64_t)(at->origin[1] + j));
         for (double i = floor(from); i <= to; i++) {
             x[0] = i - at->centre[0];
             double reach = 0, nearest = 0; /* the cell's largest and least |g . x|, 1 at the sides */
@@ -160,7 +153,7 @@ static int64_t count_cells(const area *at, const kinds *box, uint64_t seed) {
                 reach = larger(reach, middle + half), nearest = larger(nearest, middle - half);
             }
             if (nearest > 1) continue;
-            const uint64_t cell = mix(row + GOLDEN * (uint64_t)(int64_t)(at->origin[0] + i));
+            const uint64_t cell = mu_mix(row + MU_GOLDEN * (uint64_t)(int64_t)(at->origin[0] + i));
             count += count_cell(at, box, reach < 1, x, cell);
         }
     }
@@ -194,7 +187,7 @@ mu_flake_tally mu_flake_count(const mu_flakes *flakes, const double footprint[6]
     const area at = area_make(footprint, a, b, side);
     const kinds in = kinds_make(box, rings);
     tally.count = (double)count_cells(
-        &at, &in, mix(flakes->seed + GOLDEN * (uint64_t)tally.thinning + (uint64_t)rings));
+        &at, &in, mu_mix(flakes->seed + MU_GOLDEN * (uint64_t)tally.thinning + (uint64_t)rings));
     return tally;
 }
 

@@ -14,7 +14,7 @@ static inline real folded_density(plan_kind plan, const closure *c, const real o
                                   real sigma_o) {
     const real h[3] = {o[0] + i[0], o[1] + i[1], o[2] - i[2]}; /* o + j */
     if (!(h[2] > 0)) return 0;                                 /* no micronormal points down */
-    const real h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    const real h2 = dot(h, h);
     return smaller(transformed_density(plan, c, h, h2) / 4 * (c->map.view_z / larger(sigma_o, REAL_MIN)),
                    saturated);
 }

@@ -85,7 +85,7 @@ static double shape_prepare(base *b, const mu_definition *definition) {
         const double end = peak * peak * exp(-2 * (gamma - 2) * L),
                      bound = fmax(fmax(1, isfinite(there) ? there : 1), end);
         g[GTR_TURN] = R(there >= fmax(1, end) ? x : 1e30); /* or it never falls */
-        g[GTR_BOUND] = R(INV_PI * bound * (1 + 4 * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON)));
+        g[GTR_BOUND] = R(INV_PI * bound * (1 + 4 * REAL_EPSILON));
     } else {
         mixture_prepare(g, d, L);
     }

@@ -3,10 +3,6 @@
 /* multiple.c: makes what a surface keeps for multiple scattering. */
 #include "core/bsdf/multiple.h"
 
-static size_t padded(size_t bytes) {
-    return (bytes + 63) / 64 * 64;
-}
-
 size_t MU(multiple_bytes)(const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return 0;
     const size_t head = padded(sizeof(multiple));

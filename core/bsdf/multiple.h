@@ -11,6 +11,7 @@
 
 #include "core/bsdf/albedo.h"
 #include "core/bsdf/distribution.h"
+#include "core/bsdf/padded.h"
 
 typedef struct MU(mu_multiple) {
     const mu_albedo *albedo; /* of the compensated form */
@@ -22,7 +23,7 @@ typedef struct MU(mu_multiple) {
 } multiple;
 
 static inline size_t surface_head_bytes(void) {
-    return (sizeof(surface) + 63) / 64 * 64;
+    return padded(sizeof(surface));
 }
 static inline const multiple *multiple_of(const surface *s) {
     return (const void *)((const char *)s + surface_head_bytes());

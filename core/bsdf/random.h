@@ -3,9 +3,8 @@
 /*
  * random.h: more uniforms than the caller gave, for rejection loops.
  *
- * Counter-based: the n-th number is a hash of n and of the bits of the caller's three uniforms, so a sample
- * is a pure function of u: no state, the same bits on every thread. The hash (SplitMix64's finaliser, Steele
- * et al. 2014) is a bijection of 64 bits whose outputs for neighbouring inputs are unrelated; over any set of
+ * Counter-based: the n-th number is a hash (splitmix.h) of n and of the bits of the caller's three uniforms, so a sample
+ * is a pure function of u: no state, the same bits on every thread. Over any set of
  * u that matters, its numbers are uniform and independent of u itself. Float uniforms carry 24 bits each, 72
  * together: enough that two samples of one image practically never share a sequence, and where they do they
  * differ in u no more than two equal draws would.
@@ -13,41 +12,35 @@
 #ifndef MU_RANDOM_H
 #define MU_RANDOM_H
 
-#include <stdint.h>
 #include <string.h>
 
 #include "core/bsdf/real.h"
+#include "core/bsdf/splitmix.h"
 
 typedef struct random {
     uint64_t state;
 } random_stream;
-
-static inline uint64_t random_mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
 
 static inline random_stream random_start(const real u[3]) {
     uint64_t state = 0;
     for (int i = 0; i < 3; i++) {
         uint64_t bits = 0;
         memcpy(&bits, &u[i], sizeof u[i]);
-        state = random_mix(state + bits + 0x9e3779b97f4a7c15u);
+        state = mu_mix(state + bits + MU_GOLDEN);
     }
     return (random_stream){state};
 }
 
 /* Uniform in [0,1). */
 static inline real random_next(random_stream *stream) {
-    stream->state += 0x9e3779b97f4a7c15u;
-    return R(random_mix(stream->state) >> (64 - MU_REAL_BITS)) / R(1ull << (MU_REAL_BITS - 1)) / 2;
+    stream->state += MU_GOLDEN;
+    return R(mu_mix(stream->state) >> (64 - MU_REAL_BITS)) / R(1ull << (MU_REAL_BITS - 1)) / 2;
 }
 
 /* A standard normal deviate (Box & Muller 1958). */
 static inline real random_normal(random_stream *stream) {
     const real u = 1 - random_next(stream);
-    return sqrt(-2 * log(u)) * cos(R(6.28318530717958647692) * random_next(stream));
+    return sqrt(-2 * log(u)) * cos(R(2 * PI) * random_next(stream));
 }
 
 /* The logarithm of a gamma deviate of this shape > 0 (Marsaglia & Tsang 2000). */

@@ -16,11 +16,13 @@ typedef float real;
 #define MU(id)   id##_f
 #define REAL_MAX FLT_MAX
 #define REAL_MIN FLT_MIN
+#define REAL_EPSILON FLT_EPSILON
 #elif MU_REAL_BITS == 53
 typedef double real;
 #define MU(id)   id##_d
 #define REAL_MAX DBL_MAX
 #define REAL_MIN DBL_MIN
+#define REAL_EPSILON DBL_EPSILON
 #else
 #error "compile with -DMU_REAL_BITS=24 (float) or 53 (double)"
 #endif
@@ -49,6 +51,9 @@ static inline real larger(real a, real b) {
 }
 static inline real square(real x) {
     return x * x;
+}
+static inline real dot(const real a[3], const real b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 #endif

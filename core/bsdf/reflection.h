@@ -9,9 +9,9 @@
  * turns a short h, of grazing forward scattering; |wo - wi| is 2 there. Not in the paper. Returns |h|². */
 static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
     const real apart[3] = {wo[0] - wi[0], wo[1] - wi[1], wo[2] - wi[2]};
-    const real off = (h[0] * apart[0] + h[1] * apart[1] + h[2] * apart[2]) / (4 - h2);
+    const real off = dot(h, apart) / (4 - h2);
     for (int k = 0; k < 3; k++) h[k] -= off * apart[k];
-    return h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    return dot(h, h);
 }
 
 /* Does it draw some directions uniformly? */
@@ -56,12 +56,12 @@ HOT void reflection_eval(plan_kind plan, const closure *c, mu_sampler sampler, c
     *out = (value){0};
     if (!(i[2] > 0)) return;
     real h[3] = {c->wo[0] + i[0], c->wo[1] + i[1], c->wo[2] + i[2]};
-    real h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+    real h2 = dot(h, h);
     if (h2 < R(0.25)) h2 = sharpen(c->wo, i, h, h2);
     const real sum2 = h2;
     for (int k = 0; h2 < R(1e-24) && k < 32; k++) { /* i = -wo but for rounding: h² must not underflow */
         for (int j = 0; j < 3; j++) h[j] *= R(0x1p60);
-        h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+        h2 = dot(h, h);
     }
     const real quarter_d = transformed_density(plan, c, h, h2) / 4;
     real sigma_i, lambda_i;

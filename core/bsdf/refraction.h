@@ -12,28 +12,6 @@
  * so that f(wo,wi) / n_o² is symmetric (seed 003 Eq. 4c): (wo.h - eta i.h)², which stands in the textbook, is |H|².
  */
 
-/* H, and |H|² without the cancellation of eta near 1; 0 if no facet refracts wo into -i. */
-static inline real refraction_half(const closure *c, const real i[3], real H[3]) {
-    const real eta = c->eta, sign = eta > 1 ? R(1) : R(-1);
-    real apart2 = 0, facing_o = 0, facing_i = 0;
-    for (int k = 0; k < 3; k++) {
-        const real apart = i[k] - c->wo[k];
-        apart2 += apart * apart;
-        H[k] = sign * ((eta - 1) * i[k] + apart);
-        facing_o += H[k] * c->wo[k], facing_i += H[k] * i[k];
-    }
-    if (!(H[2] > 0 && facing_o > 0 && facing_i > 0)) return 0;
-    return square(eta - 1) + eta * apart2;
-}
-
-/* (wo.H)(i.H) D / |H|^4 times 1 - F, which `reflected` receives as F. */
-static inline real refraction_density(const closure *c, const real i[3], const real H[3], real H2, real F) {
-    const real facing_o = H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2],
-               facing_i = H[0] * i[0] + H[1] * i[1] + H[2] * i[2];
-    const real d = transformed_density(PLAN_FULL, c, H, H2);
-    return smaller(d * (facing_o / H2) * (facing_i / H2) * (1 - F), saturated);
-}
-
 static inline void refraction_fill(const closure *c, const real i[3], real d, real flakes, real f[3],
                                    real *pdf, real *reverse) {
     real sigma_i, lambda_i;
@@ -49,37 +27,19 @@ static inline void refraction_fill(const closure *c, const real i[3], real d, re
 
 static inline void refraction_eval(const closure *c, const real i[3], value *out) {
     *out = (value){0};
-    real H[3];
-    const real H2 = c->eta == 1 ? 0 : refraction_half(c, i, H);
-    if (!(H2 > 0)) return;
-    const real facing = (H[0] * c->wo[0] + H[1] * c->wo[1] + H[2] * c->wo[2]) / sqrt(H2),
-               facing_i = (H[0] * i[0] + H[1] * i[1] + H[2] * i[2]) / sqrt(H2);
-    const real F = MU(fresnel_between)(c->eta, smaller(facing, 1), c->eta * smaller(facing_i, 1));
-    const real d = refraction_density(c, i, H, H2, F);
-    refraction_fill(c, i, d, glint(PLAN_FULL, c, H, H2), out->f, &out->pdf, &out->pdf_reverse);
-}
-
-/* The direction that micronormal m (unit, seen at the cosine `facing` > 0) refracts wo into, turned over to the side of
- * wo. Returns H.m = eta i.m - wo.m; i.z = 0 in total reflection. */
-static inline real refract(const closure *c, const real m[3], real facing, real i[3]) {
-    const real eta = c->eta, inside = square(eta) - (1 - facing) * (1 + facing);
-    if (!(inside > 0)) {
-        i[0] = i[1] = i[2] = 0;
-        return 0;
-    }
-    /* eta i = wo + (sqrt(eta² - sin²) - cos) m, the difference without its cancellation */
-    const real along = (eta - 1) * (eta + 1) / (sqrt(inside) + facing);
-    real length2 = 0;
-    for (int k = 0; k < 3; k++) i[k] = (c->wo[k] + along * m[k]) / eta, length2 += i[k] * i[k];
-    for (int k = 0; k < 3; k++) i[k] /= sqrt(length2);
-    return along;
+    const refraction r = refraction_between(c->eta, c->wo, i);
+    if (!(r.H2 > 0)) return;
+    const real F = refraction_fresnel(c->eta, &r);
+    const real d =
+        smaller(refraction_spread(&r, transformed_density(PLAN_FULL, c, r.H, r.H2)) * (1 - F), saturated);
+    refraction_fill(c, i, d, glint(PLAN_FULL, c, r.H, r.H2), out->f, &out->pdf, &out->pdf_reverse);
 }
 
 /* wo refracted through the sampled micronormal, whose density is d and for which F says how much is reflected. */
 static inline void refraction_sample(const closure *c, const real m[3], real facing, real d, real F,
                                      sample *out) {
     real i[3];
-    const real along = refract(c, m, facing, i);
+    const real along = refract(c->eta, c->wo, m, facing, i);
     if (!(i[2] > 0)) return;
     const real eta = c->eta;
     for (int k = 0; k < 3; k++) out->wi[k] = -c->side * i[k];
@@ -96,7 +56,7 @@ static inline void refraction_sample(const closure *c, const real m[3], real fac
         out->delta = 1, out->pdf = out->pdf_reverse = 1 - F;
         return;
     }
-    const real facing_i = i[0] * m[0] + i[1] * m[1] + i[2] * m[2];
+    const real facing_i = dot(i, m);
     const real density_i =
         smaller(d * facing * facing_i / larger(along * along, REAL_MIN) * (1 - F), saturated);
     refraction_fill(c, i, density_i, flakes, out->f, &out->pdf, &out->pdf_reverse);

@@ -21,7 +21,7 @@ static inline int draw_normal(plan_kind plan, const closure *c, const real from[
         sample_slope(&c->surface->base, u, n); /* Eq. (25) */
     }
     map_normal_back(plan, &c->map, n, m); /* Eq. (26) */
-    const real length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const real length = sqrt(dot(m, m));
     if (!(length > 0)) return 0;
     for (int k = 0; k < 3; k++) m[k] /= length;
     const real stretch = length / (c->map.view_z * c->map.normal_z);
@@ -55,7 +55,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     for (int k = 0; k < 3; k++) i[k] = 2 * cosine * m[k] - c->wo[k];
     const int folded = plan == PLAN_FULL && folds(sampler);
     if (!(i[2] > 0) && !(folded && i[2] < 0)) return;
-    const real unit = R(1) / sqrt(i[0] * i[0] + i[1] * i[1] + i[2] * i[2]);
+    const real unit = R(1) / sqrt(dot(i, i));
     for (int k = 0; k < 3; k++) i[k] *= unit, out->wi[k] = plan == PLAN_FULL ? c->side * i[k] : i[k];
     if (folded && i[2] < 0) {
         i[2] = -i[2];
@@ -102,7 +102,7 @@ static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sample
     }
     if (!draw_normal(plan, c, c->wo, sampler, moved, m, &d)) return;
     for (int k = 0; k < 3; k++) out->wm[k] = plan == PLAN_FULL ? c->side * m[k] : m[k];
-    const real cosine = m[0] * c->wo[0] + m[1] * c->wo[1] + m[2] * c->wo[2];
+    const real cosine = dot(m, c->wo);
     if (!(cosine > 0)) return;
     real F[3];
     fresnel_of(c, cosine, F);

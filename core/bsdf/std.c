@@ -98,8 +98,7 @@ static double prepare(base *b, const mu_definition *d, void *table) {
     s[STD_P] = R(gamma - 1.5);
     s[STD_HORIZON] = R(mu_std_horizon(gamma));
     /* largest at X = 1: 4 (1 - 1/gamma)^gamma, and room for rounding */
-    s[STD_BOUND] = R(4 * INV_PI * exp(gamma * log1p(-1 / gamma)) *
-                     (1 + 16 * (MU_REAL_BITS == 24 ? FLT_EPSILON : DBL_EPSILON)));
+    s[STD_BOUND] = R(4 * INV_PI * exp(gamma * log1p(-1 / gamma)) * (1 + 16 * REAL_EPSILON));
     b->table = NULL;
     if (MU_REAL_BITS == 24) {
         s[STD_OCTAVES] = R(octaves(gamma));

@@ -7,6 +7,7 @@
 #include "core/bsdf/tabulated.h"
 
 #include "core/bsdf/distribution.h"
+#include "core/bsdf/padded.h"
 #include "core/bsdf/random.h"
 
 typedef struct tabulated {
@@ -66,7 +67,7 @@ static void normal_at(const base *b, const double p[2], real n[3]) {
     for (int k = 0; k < 2; k++) {
         const double x = (p[k] - (double)s[TABULATED_ORIGIN + k]) * (double)s[TABULATED_PER_CELL + k],
                      cells = (double)s[TABULATED_CELLS + k];
-        const double edge = cells * (MU_REAL_BITS == 24 ? 4 * FLT_EPSILON : 4 * DBL_EPSILON);
+        const double edge = cells * 4 * REAL_EPSILON;
         const double cell = fmin(fmax(floor(x), 0), cells - 1);
         const double inside = fmin(fmax(x - cell, edge), 1 - edge);
         n[k] = R((double)s[TABULATED_ORIGIN + k] + (cell + inside) / (double)s[TABULATED_PER_CELL + k]);
@@ -112,10 +113,6 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
     double p[2];
     mu_tabulated_visible(g, v, again, next, &more, p);
     normal_at(b, p, n);
-}
-
-static size_t padded(size_t bytes) {
-    return (bytes + 63) / 64 * 64;
 }
 
 static size_t table_bytes(const mu_definition *d) {

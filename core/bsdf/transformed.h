@@ -15,6 +15,7 @@
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
 #include "core/bsdf/shadowing.h"
+#include "core/bsdf/snell.h"
 
 static const real saturated = REAL_MAX;
 
@@ -87,7 +88,7 @@ static inline void eval_of(plan_kind plan, const closure *c, const real wi[3], v
         view_of(plan, c, v, sigma, lambda);                                                                  \
     }                                                                                                        \
     static real density_##name(const closure *c, const real m[3]) {                                          \
-        return m[2] > 0 ? transformed_density(plan, c, m, m[0] * m[0] + m[1] * m[1] + m[2] * m[2]) : 0;      \
+        return m[2] > 0 ? transformed_density(plan, c, m, dot(m, m)) : 0;      \
     }                                                                                                        \
     static real shadowing_##name(const closure *c, const real i[3], int transmitted) {                       \
         real sigma_i, lambda_i;                                                                              \

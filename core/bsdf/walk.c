@@ -18,6 +18,7 @@
  */
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
+#include "core/bsdf/snell.h"
 
 typedef struct walk {
     const kernel *full;
@@ -30,10 +31,6 @@ typedef struct walk {
     real weight[3];
     random_stream random;
 } walk;
-
-static real dot(const real a[3], const real b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static real cliffs_seen(const walk *p, const real from[3]) {
     return larger(p->cliff[0] * from[0] + p->cliff[1] * from[1], 0);
@@ -102,21 +99,19 @@ static int scatter_off_facet(walk *p, const real from[3], real m[3]) {
     if (!p->full->normal(p->c, from, u, m)) return 0;
     const real facing = dot(from, m), eta = eta_of(p, p->side);
     if (!(facing > 0)) return 0;
-    real F[3], length2 = 0;
+    real F[3];
     MU(fresnel_eval)(&p->c->surface->fresnel, eta, smaller(facing, 1), F);
     if (p->c->surface->transmission && random_next(&p->random) >= F[0]) {
-        const real inside = larger(square(eta) - (1 - facing) * (1 + facing), 0);
-        const real along = (eta - 1) * (eta + 1) / (sqrt(inside) + facing);
-        for (int k = 0; k < 3; k++) p->w[k] = (from[k] + along * m[k]) / eta; /* turned over */
+        (void)refract(eta, from, m, facing, p->w); /* turned over */
         p->side ^= 1, p->depth = turned_over(p->depth);
-    } else {
-        for (int k = 0; k < 3; k++) {
-            p->w[k] = 2 * facing * m[k] - from[k];
-            if (!p->c->surface->transmission) p->weight[k] *= F[k];
-        }
+        return p->w[2] != 0 || p->w[0] != 0 || p->w[1] != 0;
     }
-    for (int k = 0; k < 3; k++) length2 += square(p->w[k]);
-    for (int k = 0; k < 3; k++) p->w[k] /= sqrt(length2);
+    for (int k = 0; k < 3; k++) {
+        p->w[k] = 2 * facing * m[k] - from[k];
+        if (!p->c->surface->transmission) p->weight[k] *= F[k];
+    }
+    const real length = sqrt(dot(p->w, p->w));
+    for (int k = 0; k < 3; k++) p->w[k] /= length;
     return 1;
 }
 
@@ -151,23 +146,18 @@ void MU(walk_trace)(const kernel *full, const closure *c, const multiple *with, 
 /* Toward i: the density of the facets at hand that send the ray there, 1/sr, with F or 1 - F. */
 static void toward(const walk *p, const real from[3], real seen, const real i[3], int refracted, real F[3]) {
     const real eta = eta_of(p, p->side);
-    real H[3], H2 = 0, apart2 = 0, facing = 0, density = 0;
-    const real sign = eta > 1 ? R(1) : R(-1);
-    for (int k = 0; k < 3; k++) {
-        const real apart = i[k] - from[k]; /* as in refraction.h: nothing cancels where eta is near 1 */
-        H[k] = refracted ? sign * ((eta - 1) * i[k] + apart) : from[k] + i[k];
-        H2 += square(H[k]), apart2 += square(apart), facing += H[k] * from[k];
-    }
-    if (refracted) H2 = square(eta - 1) + eta * apart2;
+    refraction r = {.H = {from[0] + i[0], from[1] + i[1], from[2] + i[2]}};
+    if (refracted)
+        r = refraction_between(eta, from, i);
+    else
+        r.H2 = dot(r.H, r.H), r.o_H = dot(r.H, from);
     F[0] = F[1] = F[2] = 0;
-    const real H_i = dot(H, i);
-    if (H[2] > 0 && H2 > 0 && facing > 0 && H_i > 0) {
-        const real length = sqrt(H2), m[3] = {H[0] / length, H[1] / length, H[2] / length};
-        const real d = p->full->density(p->c, m) / seen;
-        density = refracted ? d * (facing / H2) * (H_i / H2) * square(eta) : d / 4;
-        MU(fresnel_eval)(&p->c->surface->fresnel, eta, smaller(facing / length, 1), F);
-        for (int k = 0; k < 3; k++) F[k] = smaller((refracted ? 1 - F[k] : F[k]) * density, REAL_MAX);
-    }
+    if (!(r.H[2] > 0 && r.H2 > 0 && r.o_H > 0)) return;
+    const real length = sqrt(r.H2), m[3] = {r.H[0] / length, r.H[1] / length, r.H[2] / length};
+    const real d = p->full->density(p->c, m) / seen,
+               density = refracted ? refraction_spread(&r, d) * square(eta) : d / 4;
+    MU(fresnel_eval)(&p->c->surface->fresnel, eta, smaller(r.o_H / length, 1), F);
+    for (int k = 0; k < 3; k++) F[k] = smaller((refracted ? 1 - F[k] : F[k]) * density, REAL_MAX);
 }
 
 /* The same of the cliffs. */
@@ -181,7 +171,7 @@ static void add_cliffs(const walk *p, const real from[3], real seen, const real 
 
 static random_stream random_of(const closure *c, const multiple *with, const real wi[3]) {
     const uint64_t o = random_start(c->wo).state, i = random_start(wi).state;
-    return (random_stream){random_mix(o + 0x9e3779b97f4a7c15u * with->salt + (c->side < 0)) ^ i};
+    return (random_stream){mu_mix(o + MU_GOLDEN * with->salt + (c->side < 0)) ^ i};
 }
 
 void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3],

@@ -13,7 +13,7 @@
 #ifndef MU_RANDOM_H
 #define MU_RANDOM_H
 
-#include <stdint.h>
+#include "core/surface/noise.h" /* mu_mix */
 
 typedef struct mu_random {
     uint64_t key;       /* of seed and pixel */
@@ -21,14 +21,6 @@ typedef struct mu_random {
     uint32_t dimension; /* counts the draws */
     _Bool independent;
 } mu_random;
-
-/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014: the mixer of
- * SplitMix64. */
-static inline uint64_t mu_mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
 
 static inline uint32_t mu_reverse_bits(uint32_t x) {
     x = __builtin_bswap32(x);
@@ -66,13 +58,13 @@ static inline float mu_unit(uint32_t bits) {
 
 static inline mu_random mu_random_start(uint64_t seed, uint32_t x, uint32_t y, uint32_t sample) {
     const uint64_t pixel = (uint64_t)y << 32 | x;
-    const uint64_t key = mu_mix(mu_mix(seed + 0x9e3779b97f4a7c15u) ^ mu_mix(pixel + 0x632be59bd9b4e019u));
+    const uint64_t key = mu_mix(mu_mix(seed + MU_GOLDEN) ^ mu_mix(pixel + 0x632be59bd9b4e019u));
     return (mu_random){.key = key, .index = mu_reverse_bits(sample)};
 }
 
 /* The next 64 random bits that are the same for all samples of the pixel. */
 static inline uint64_t mu_random_bits(mu_random *random) {
-    return mu_mix(random->key + ++random->dimension * 0x9e3779b97f4a7c15u);
+    return mu_mix(random->key + ++random->dimension * MU_GOLDEN);
 }
 
 static inline float mu_random_one(mu_random *random) {

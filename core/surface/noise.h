@@ -5,19 +5,12 @@
 #define MU_NOISE_H
 
 #include <math.h>
-#include <stdint.h>
 
-/* The finaliser of SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014. */
-static inline uint64_t mu_noise_mix(uint64_t z) {
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
+#include "core/bsdf/splitmix.h"
 
 /* Uniform in (0, 1): the middle of one of 2^52 cells. */
 static inline double mu_noise_uniform(uint64_t seed, uint64_t index) {
-    const uint64_t golden = UINT64_C(0x9e3779b97f4a7c15);
-    const uint64_t bits = mu_noise_mix(mu_noise_mix(seed + golden) + golden * (index + 1));
+    const uint64_t bits = mu_mix(mu_mix(seed + MU_GOLDEN) + MU_GOLDEN * (index + 1));
     return ((double)(bits >> 12) + 0.5) * 0x1p-52;
 }
 

@@ -51,10 +51,9 @@ static void lay(const surface *s, const mu_definition *d, mu_albedo *t) {
     const double scale = s->unit / (fabs(product_difference(m[0], m[3], m[1], m[2])) * largest);
     const double wide = fmin(fmax(v.large * scale, smallest), 1),
                  narrow = fmin(fmax(fabs(v.small) * scale, smallest), 1);
-    const double other = copysign(narrow / wide, v.small), q = (1 + other) / 2, r = (1 - other) / 2;
-    const double e = q * cos(v.sum), h = q * sin(v.sum), f = r * cos(v.difference), g = r * sin(v.difference);
-    const double to[4] = {e + f, g - h, g + h, e - f};
-    const double from[4] = {to[3] / other, -to[1] / other, -to[2] / other, to[0] / other};
+    const double other = copysign(narrow / wide, v.small);
+    double to[4], from[4];
+    singular_matrix(&v, 1, other, to, from);
     for (int i = 0; i < 4; i++) t->to[i] = (float)to[i], t->from[i] = (float)from[i];
     t->det = (float)fabs(other);
     t->power = (float)fmax(log(wide) / log(0.45), 3);

@@ -55,16 +55,6 @@ static lobe lobe_toward(const closure *c, const multiple *m, const real i[3], in
     return l;
 }
 
-static int facing(const closure *c, const real wi[3], real i[3]) {
-    const int transmitted = c->side * wi[2] < 0;
-    for (int k = 0; k < 3; k++) i[k] = (transmitted ? -c->side : c->side) * wi[k];
-    return transmitted;
-}
-
-static real radiance_factor(const closure *c, int transmitted) {
-    return transmitted && !c->importance ? 1 / square(c->eta) : 1;
-}
-
 static real mix(real chosen, real pdf, real single) {
     return smaller(chosen * pdf + (1 - chosen) * single, REAL_MAX);
 }
@@ -72,11 +62,11 @@ static real mix(real chosen, real pdf, real single) {
 void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3], value *out) {
     real i[3];
     full->eval(c, wi, out);
-    const int transmitted = facing(c, wi, i);
+    const int transmitted = closure_turn(c, wi, i);
     if (!(i[2] > 0) || (transmitted && !c->surface->transmission)) return;
     const lobe l = lobe_toward(c, multiple_of(c->surface), i, transmitted);
     for (int k = 0; k < 3; k++)
-        out->f[k] = smaller(out->f[k] + l.f[k] * radiance_factor(c, transmitted), REAL_MAX);
+        out->f[k] = smaller(out->f[k] + l.f[k] * closure_transport(c, transmitted), REAL_MAX);
     out->pdf = mix(l.chosen, l.pdf, out->pdf);
     out->pdf_reverse = mix(l.back, l.reverse, out->pdf_reverse);
 }
@@ -123,11 +113,11 @@ void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sam
         return;
     }
     real i[3];
-    const int transmitted = facing(c, out->wi, i);
+    const int transmitted = closure_turn(c, out->wi, i);
     const lobe l = lobe_toward(c, m, i, transmitted);
     const real pdf = larger(mix(chosen, l.pdf, out->pdf), REAL_MIN), single = out->pdf / pdf;
     for (int k = 0; k < 3; k++) {
-        const real f = l.f[k] * radiance_factor(c, transmitted);
+        const real f = l.f[k] * closure_transport(c, transmitted);
         out->f[k] = smaller(out->f[k] + f, REAL_MAX);
         out->weight[k] = out->weight[k] * single + f * (i[2] / pdf);
     }

@@ -87,6 +87,36 @@ void MU(fresnel_eval)(const fresnel *f, real eta, real cosine, real out[3]);
 real MU(fresnel_dielectric)(real eta, real cosine);
 real MU(fresnel_between)(real eta, real cosine, real g);
 
+/* Does it draw from all normals, by D cos, rather than from visible ones? */
+static inline int draws_all(mu_sampler sampler) {
+    return sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED;
+}
+
+/* Does it draw some directions uniformly? */
+static inline int mixes(mu_sampler sampler) {
+    return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM ||
+           sampler == MU_SAMPLE_FOLDED_UNIFORM;
+}
+
+/* Does it turn up what falls below the horizon? */
+static inline int folds(mu_sampler sampler) {
+    return sampler == MU_SAMPLE_FOLDED || sampler == MU_SAMPLE_FOLDED_UNIFORM;
+}
+
+/* wi as seen from the side that it is on, i.z >= 0: turned over with wo, and again if it is on the other side than wo; then
+ * 1 is returned. */
+static inline int closure_turn(const closure *c, const real wi[3], real i[3]) {
+    const int transmitted = c->side * wi[2] < 0;
+    const real turn = transmitted ? -c->side : c->side;
+    for (int k = 0; k < 3; k++) i[k] = turn * wi[k];
+    return transmitted;
+}
+
+/* What radiance is of importance: refraction spreads and narrows it by n² (Veach 1997, Section 5.2). */
+static inline real closure_transport(const closure *c, int transmitted) {
+    return transmitted && !c->importance ? 1 / square(c->eta) : 1;
+}
+
 /* K / E[K] of the flakes in the closure's footprint around the normal n, of squared length n2 (glint.c). */
 real MU(glint_count)(const closure *c, const real n[3], real n2);
 

@@ -107,12 +107,8 @@ int MU(map_widen)(map *m, double base, double alpha) {
                             (double)m->view[3] / z};
     const singular v = singular_of(rows);
     if (fabs(v.small) >= alpha) return 0;
-    const double wide = fmax(v.large, alpha), narrow = copysign(alpha, v.small);
-    const double q2 = (wide + narrow) / 2, r2 = (wide - narrow) / 2;
-    const double e2 = q2 * cos(v.sum), h2 = q2 * sin(v.sum);
-    const double f2 = r2 * cos(v.difference), g2 = r2 * sin(v.difference);
-    const double det = wide * narrow;
-    const double inverse[4] = {(e2 - f2) / det, -(g2 - h2) / det, -(g2 + h2) / det, (e2 + f2) / det};
+    double wider[4], inverse[4];
+    singular_matrix(&v, fmax(v.large, alpha), copysign(alpha, v.small), wider, inverse);
     /* the tilt acts before M: t V has to stay as M changes to V'^-1 */
     const double t[2] = {(double)m->tilt[0], (double)m->tilt[1]},
                  mean[2] = {(t[0] * rows[0] + t[1] * rows[2]) / base,

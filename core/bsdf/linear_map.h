@@ -72,6 +72,11 @@ static inline real map_view(plan_kind plan, const map *m, const real v[3], real 
     return raised;
 }
 
+/* View_z times the mean slope of the transformed microsurface, M^-T t; by sign, what its normals lean to is minus that. */
+static inline void map_mean(const map *m, real mean[2]) {
+    for (int k = 0; k < 2; k++) mean[k] = m->tilt[0] * m->view[k] + m->tilt[1] * m->view[2 + k];
+}
+
 /* m = M^-T u, Eq. (26), not normalised. */
 static inline void map_normal_back(plan_kind plan, const map *m, const real u[3], real n[3]) {
     const real flat[2] = {u[0] - (plan == PLAN_FULL ? m->tilt[0] * u[2] : 0),

@@ -35,9 +35,9 @@ normal_values MU(mu_normal)(const closure *c, const real wm[3]) {
 /* F and G2 at the micronormal that sends wo into wi. */
 pair_values MU(mu_pair)(const closure *c, const real wi[3]) {
     pair_values out = {{0}, 0};
-    const int transmitted = c->side * wi[2] < 0;
-    const real turn = transmitted ? -c->side : c->side;
-    const real *o = c->wo, i[3] = {turn * wi[0], turn * wi[1], turn * wi[2]};
+    real i[3];
+    const int transmitted = closure_turn(c, wi, i);
+    const real *o = c->wo;
     if (!(i[2] > 0 && o[2] > 0) || (transmitted && !c->surface->transmission)) return out;
     if (transmitted) {
         const refraction r = refraction_between(c->eta, o, i);

@@ -30,13 +30,12 @@ static real cliff_masking(const kernel *full, const closure *c, const real i[3])
     const map *m = &c->map;
     if (m->tilt[0] == 0 && m->tilt[1] == 0) return 1;
     const real *w[2] = {c->wo, i};
-    real Lambda[2];
+    real Lambda[2], mean[2];
+    map_mean(m, mean);
     for (int k = 0; k < 2; k++) { /* sigma = cos (1 + Lambda) */
         real sigma, lambda;
         full->view(c, w[k], &sigma, &lambda);
-        const real cliffs = larger((m->tilt[0] * m->view[0] + m->tilt[1] * m->view[2]) * w[k][0] +
-                                       (m->tilt[0] * m->view[1] + m->tilt[1] * m->view[3]) * w[k][1],
-                                   0);
+        const real cliffs = larger(mean[0] * w[k][0] + mean[1] * w[k][1], 0);
         Lambda[k] = larger(lambda + cliffs, 0) / (m->view_z * larger(w[k][2], REAL_MIN));
     }
     const real masked = full->shadowing(c, i, 0) * (1 + Lambda[0] + Lambda[1]);
@@ -48,13 +47,13 @@ static int passes_straight(const closure *c) {
 }
 
 void MU(walk_eval)(const kernel *full, const closure *c, const real wi[3], value *out) {
-    const int transmitted = c->side * wi[2] < 0;
-    const real turn = transmitted ? -c->side : c->side, i[3] = {turn * wi[0], turn * wi[1], turn * wi[2]};
+    real i[3];
+    const int transmitted = closure_turn(c, wi, i);
     full->eval(c, wi, out);
     if (!(i[2] > 0) || passes_straight(c) || (transmitted && !c->surface->transmission)) return;
     real more[3];
     const real once = transmitted ? 0 : cliff_masking(full, c, i),
-               radiance = transmitted && !c->importance ? 1 / square(c->eta) : 1;
+               radiance = closure_transport(c, transmitted);
     MU(walk_estimate)(full, c, multiple_of(c->surface), wi, transmitted ? 1 : 2, WALK_BOUNCES, more);
     for (int k = 0; k < 3; k++) out->f[k] = smaller(out->f[k] * once + more[k] * radiance, REAL_MAX);
     mix_pdf(c, i[2], &out->pdf, &out->pdf_reverse);
@@ -77,8 +76,7 @@ void MU(walk_sample)(const kernel *full, const closure *c, mu_sampler sampler, c
     MU(walk_trace)(full, c, multiple_of(c->surface), u, &end);
     for (int k = 0; k < 3; k++) out->wm[k] = c->side * end.m[k];
     if (!(end.i[2] > 0)) return;
-    const real turn = end.transmitted ? -c->side : c->side,
-               radiance = end.transmitted && !c->importance ? 1 / square(c->eta) : 1;
+    const real turn = end.transmitted ? -c->side : c->side, radiance = closure_transport(c, end.transmitted);
     value v;
     for (int k = 0; k < 3; k++) out->wi[k] = turn * end.i[k];
     full->eval(c, out->wi, &v);

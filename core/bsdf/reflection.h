@@ -14,24 +14,13 @@ static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
     return dot(h, h);
 }
 
-/* Does it draw some directions uniformly? */
-static inline int mixes(mu_sampler sampler) {
-    return sampler == MU_SAMPLE_MIXED || sampler == MU_SAMPLE_VISIBLE_UNIFORM ||
-           sampler == MU_SAMPLE_FOLDED_UNIFORM;
-}
-
-/* Does it turn up what falls below the horizon? */
-static inline int folds(mu_sampler sampler) {
-    return sampler == MU_SAMPLE_FOLDED || sampler == MU_SAMPLE_FOLDED_UNIFORM;
-}
-
 /* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand.
  * Returns the one that its normals alone would have. */
 static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,
                                   real over_cos_oh, const real i[3], real sigma_i, real choice, real *pdf,
                                   real *reverse) {
     const real scale = c->map.view_z;
-    if (MUTANT(5, 1, sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)) {
+    if (MUTANT(5, 1, draws_all(sampler))) {
         *pdf = *reverse = smaller(quarter_d * smaller(over_cos_oh, saturated) * choice, saturated);
     } else {
         const real shown_o = c->sigma - bounded_less(c, sampler, c->wo),

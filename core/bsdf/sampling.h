@@ -10,7 +10,7 @@
 static inline int draw_normal(plan_kind plan, const closure *c, const real from[3], mu_sampler sampler,
                               const real u[3], real m[3], real *d) {
     real n[3];
-    if (sampler != MU_SAMPLE_NDF && sampler != MU_SAMPLE_MIXED) {
+    if (!draws_all(sampler)) {
         real w[3];
         map_view(plan, &c->map, from, w);
         if (TRAITS & IS_UNIT_GGX && sampler == MU_SAMPLE_BOUNDED)
@@ -73,7 +73,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     const real own = reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, i, sigma_i, choice, &out->pdf,
                                     &out->pdf_reverse);
     real weight = ratio; /* F G2 / G1 */
-    if (sampler == MU_SAMPLE_NDF || sampler == MU_SAMPLE_MIXED)
+    if (draws_all(sampler))
         weight = smaller(i[2] / open * scale * (cosine / larger(m[2], REAL_MIN)), saturated);
     if (folded || (plan == PLAN_FULL && mixes(sampler))) /* its own density over that of all ways */
         weight *= own / larger(out->pdf, REAL_MIN);

@@ -36,4 +36,14 @@ static inline singular singular_of(const double m[4]) {
     return (singular){large, det / scaled, atan2(h, e), atan2(g, f)};
 }
 
+/* The matrix that has the rotations of `s`, and these singular values; and the inverse of that. */
+static inline void singular_matrix(const singular *s, double large, double small, double m[4],
+                                   double inverse[4]) {
+    const double q = (large + small) / 2, r = (large - small) / 2, det = large * small;
+    const double e = q * cos(s->sum), h = q * sin(s->sum), f = r * cos(s->difference),
+                 g = r * sin(s->difference);
+    m[0] = e + f, m[1] = g - h, m[2] = g + h, m[3] = e - f;
+    inverse[0] = m[3] / det, inverse[1] = -m[1] / det, inverse[2] = -m[2] / det, inverse[3] = m[0] / det;
+}
+
 #endif

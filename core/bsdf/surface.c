@@ -83,10 +83,8 @@ static int is_discrete(const mu_definition *d) {
 
 /* Does it need what only the full plan has? */
 static int needs_full(const mu_definition *d) {
-    const int mixes = d->sampler == MU_SAMPLE_MIXED || d->sampler == MU_SAMPLE_VISIBLE_UNIFORM ||
-                      d->sampler == MU_SAMPLE_FOLDED || d->sampler == MU_SAMPLE_FOLDED_UNIFORM;
     return d->tilt[0] != 0 || d->tilt[1] != 0 || d->transmission || d->masking != MU_HEIGHT_CORRELATED ||
-           mixes || d->multiple == MU_COMPENSATED;
+           mixes(d->sampler) || folds(d->sampler) || d->multiple == MU_COMPENSATED;
 }
 
 static size_t multiple_bytes(const plan *p, const mu_definition *d) {

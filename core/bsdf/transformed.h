@@ -70,11 +70,12 @@ static inline void eval_of(plan_kind plan, const closure *c, const real wi[3], v
         reflection_eval(plan, c, c->surface->sampler, wi, out);
         return;
     }
-    const real i[3] = {c->side * wi[0], c->side * wi[1], c->side * wi[2]}, under[3] = {-i[0], -i[1], -i[2]};
-    if (i[2] < 0 && c->surface->transmission)
-        refraction_eval(c, under, out);
-    else
+    real i[3];
+    *out = (value){0};
+    if (!closure_turn(c, wi, i))
         reflection_eval(plan, c, c->surface->sampler, i, out);
+    else if (c->surface->transmission)
+        refraction_eval(c, i, out);
 }
 
 #define KERNEL_NAME_(name) MU(mu_kernel_##name)
@@ -88,7 +89,7 @@ static inline void eval_of(plan_kind plan, const closure *c, const real wi[3], v
         view_of(plan, c, v, sigma, lambda);                                                                  \
     }                                                                                                        \
     static real density_##name(const closure *c, const real m[3]) {                                          \
-        return m[2] > 0 ? transformed_density(plan, c, m, dot(m, m)) : 0;      \
+        return m[2] > 0 ? transformed_density(plan, c, m, dot(m, m)) : 0;                                    \
     }                                                                                                        \
     static real shadowing_##name(const closure *c, const real i[3], int transmitted) {                       \
         real sigma_i, lambda_i;                                                                              \

@@ -46,9 +46,8 @@ static real area_seen(const walk *p, const real from[3]) {
 static walk walk_start(const kernel *full, const closure *c, const multiple *with, random_stream random) {
     walk p = {.full = full, .c = c, .with = with, .weight = {1, 1, 1}, .random = random};
     const map *m = &c->map;
-    for (int k = 0; k < 2; k++) {
-        p.cliff[k] = (m->tilt[0] * m->view[k] + m->tilt[1] * m->view[2 + k]) / m->view_z;
-    }
+    map_mean(m, p.cliff);
+    for (int k = 0; k < 2; k++) p.cliff[k] /= m->view_z;
     for (int k = 0; k < 3; k++) p.w[k] = -c->wo[k];
     p.steepness = hypot(p.cliff[0], p.cliff[1]);
     return p;
@@ -177,9 +176,9 @@ static random_stream random_of(const closure *c, const multiple *with, const rea
 void MU(walk_estimate)(const kernel *full, const closure *c, const multiple *with, const real wi[3],
                        int first, int last, real f[3]) {
     walk p = walk_start(full, c, with, random_of(c, with, wi));
-    const int target = c->side * wi[2] < 0;
-    const real turn = target ? -c->side : c->side, i[3] = {turn * wi[0], turn * wi[1], turn * wi[2]},
-               under[3] = {-i[0], -i[1], -i[2]};
+    real i[3];
+    const int target = closure_turn(c, wi, i);
+    const real under[3] = {-i[0], -i[1], -i[2]};
     f[0] = f[1] = f[2] = 0;
     if (!(i[2] > 0)) return;
     const real Lambda = area_seen(&p, under) / i[2];

@@ -12,10 +12,6 @@
 #include "core/bsdf/padded.h"
 #include "plugin/musurf_compiled.h"
 
-static int is_mirror(const mu_definition *d) {
-    return d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG && d->ndf != MU_TABULATED);
-}
-
 /* The spread of the slopes, which is their unit, lies between a cell's and the whole of it. */
 static int histogram_in_float(const parsed *p) {
     const mu_definition *d = &p->definition;
@@ -33,14 +29,11 @@ static int histogram_in_float(const parsed *p) {
 static int float_suffices(const parsed *p) {
     const mu_definition *d = &p->definition;
     if (d->ndf == MU_TABULATED) return histogram_in_float(p);
-    const double width = d->ndf == MU_GTR     ? d->alpha / sqrt(fmax(1, d->gamma))
-                         : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
-                         : d->ndf == MU_SHEEN ? sqrt(1 + 0.5 / d->alpha)
-                                              : d->alpha;
+    const double width = mu_slope_width(d);
     const double tilt = hypot(d->tilt[0], d->tilt[1]) / width;
     const double scale = sqrt(mu_transform_determinant(d->transform));
-    return is_mirror(d) || (tilt < 0x1p30 && width >= 0x1p-30 && width <= 0x1p30 &&
-                            (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
+    return mu_is_mirror(d) || (tilt < 0x1p30 && width >= 0x1p-30 && width <= 0x1p30 &&
+                               (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
 }
 
 static const char *transform_class(const parsed *p) {
@@ -53,8 +46,8 @@ static const char *transform_class(const parsed *p) {
 /* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
     const mu_definition *d = &p->definition;
-    return p->varying || d->ndf == MU_TABULATED || musurf_is_discrete(d) || d->tilt[0] != 0 ||
-           d->tilt[1] != 0 || !mu_transform_is_similarity(d->transform);
+    return p->varying || d->ndf == MU_TABULATED || mu_is_discrete(d) || d->tilt[0] != 0 || d->tilt[1] != 0 ||
+           !mu_transform_is_similarity(d->transform);
 }
 
 static void append(char *text, size_t size, const char *more) {
@@ -64,7 +57,7 @@ static void append(char *text, size_t size, const char *more) {
 
 static void name_plan(musurf_material *m, const char *surface) {
     const parsed *p = &m->parsed;
-    const int mirror = is_mirror(&p->definition);
+    const int mirror = mu_is_mirror(&p->definition);
     snprintf(m->name, sizeof m->name, "%s%s%s%s%s", surface, mirror ? "" : ", ",
              mirror ? "" : transform_class(p), mirror ? "" : " transform",
              m->in_float ? "" : ", double precision");
@@ -72,7 +65,7 @@ static void name_plan(musurf_material *m, const char *surface) {
     if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
     if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0 && p->definition.ndf != MU_TABULATED)
         append(m->left_out, sizeof m->left_out, "tilt");
-    if (!musurf_is_discrete(&p->definition)) append(m->left_out, sizeof m->left_out, "flakes");
+    if (!mu_is_discrete(&p->definition)) append(m->left_out, sizeof m->left_out, "flakes");
     if (!(m->needs & MUSURF_NEEDS_SLOTS)) append(m->left_out, sizeof m->left_out, "slots");
     if (!m->table_bytes) append(m->left_out, sizeof m->left_out, "tables");
     if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
@@ -110,7 +103,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
     m->parsed.definition.histogram = NULL; /* the host's */
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
-    const int mirror = is_mirror(&p.definition);
+    const int mirror = mu_is_mirror(&p.definition);
     m->lobes = mirror ? MUSURF_DELTA_REFLECTION : MUSURF_GLOSSY_REFLECTION;
     m->transmits = p.definition.transmission != 0;
     if (m->transmits) {
@@ -119,7 +112,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     }
     m->needs = (!mirror && anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
                (p.varying || p.footprint_from == FOOTPRINT_SLOT ? (uint32_t)MUSURF_NEEDS_SLOTS : 0) |
-               (musurf_is_discrete(&p.definition) && p.footprint_from != FOOTPRINT_CONSTANT
+               (mu_is_discrete(&p.definition) && p.footprint_from != FOOTPRINT_CONSTANT
                     ? (uint32_t)MUSURF_NEEDS_FOOTPRINT
                     : 0);
     m->bytes = (uint32_t)bytes;

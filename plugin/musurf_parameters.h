@@ -66,8 +66,6 @@ typedef struct parsed {
     uint32_t footprint_slot;
     double footprint[6];
 } parsed;
-/* Are there flakes to be told apart? */
-int musurf_is_discrete(const mu_definition *definition);
 
 musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settings, size_t count,
                            parsed *out);

@@ -46,10 +46,6 @@ static musurf_result parse_fresnel(const given *g, mu_definition *d) {
     return MUSURF_OK;
 }
 
-int musurf_is_discrete(const mu_definition *d) {
-    return (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN) && d->alpha > 0;
-}
-
 static musurf_result parse_flakes(const given *g, parsed *out) {
     mu_definition *d = &out->definition;
     d->flake_density = musurf_number(g, FLAKE_DENSITY);
@@ -63,7 +59,7 @@ static musurf_result parse_flakes(const given *g, parsed *out) {
             return musurf_fail(g->host, MUSURF_INVALID, id,
                                "belongs to discrete_ggx and discrete_beckmann, but ndf is another");
     const musurf_setting *set = g->by_id[FOOTPRINT];
-    if (!set || !musurf_is_discrete(d)) return MUSURF_OK;
+    if (!set || !mu_is_discrete(d)) return MUSURF_OK;
     out->footprint_from =
         COVERS(set, source) && set->source == MUSURF_SLOT ? FOOTPRINT_SLOT : FOOTPRINT_CONSTANT;
     if (out->footprint_from == FOOTPRINT_SLOT)

@@ -109,7 +109,7 @@ static musurf_result parse_anisotropy(const given *g, mu_definition *d, double m
                y = musurf_number(g, g->by_id[ALPHA_Y] ? ALPHA_Y : ALPHA_X);
         if (roughness) x = g->by_id[ALPHA_X] ? x : d->alpha, y = g->by_id[ALPHA_Y] ? y : d->alpha;
         double base = roughness ? d->alpha : sqrt(x) * sqrt(y);
-        if (d->ndf == MU_PHONG) base = sqrt(2 / (d->exponent + 2)); /* its own slope roughness */
+        if (d->ndf == MU_PHONG) base = mu_slope_width(d); /* its own slope roughness */
         if (d->ndf != MU_PHONG) d->alpha = base;
         if (mu_transform_alphas(base, x, y, rotation, m)) return MUSURF_OK;
         return musurf_fail(g->host, MUSURF_INVALID, (uint32_t)along,

@@ -32,6 +32,12 @@ static int complain(mu_complaint *why, const char *field, double x, const char *
     return 0;
 }
 
+static int refuse(mu_complaint *why, const char *field, const char *text) {
+    why->field = field;
+    snprintf(why->text, sizeof why->text, "%s", text);
+    return 0;
+}
+
 static int check_fresnel(const mu_definition *d, mu_complaint *why) {
     for (int i = 0; i < 3; i++) {
         if (d->fresnel == MU_FRESNEL_SCHLICK && !(d->schlick[i] >= 0 && d->schlick[i] <= 1))
@@ -49,20 +55,13 @@ static int check_fresnel(const mu_definition *d, mu_complaint *why) {
 
 static int check_transmission(const mu_definition *d, mu_complaint *why) {
     if (!d->transmission) return 1;
-    why->field = "transmission";
-    snprintf(why->text, sizeof why->text, "%s",
-             d->fresnel != MU_FRESNEL_DIELECTRIC
-                 ? "true needs a dielectric: fresnel says how much passes, and how far it bends"
-             : d->sampler != MU_SAMPLE_VISIBLE
-                 ? "true needs the visible sampler: the others know reflection alone"
-                 : "");
-    return !why->text[0];
-}
-
-static int refuse(mu_complaint *why, const char *field, const char *text) {
-    why->field = field;
-    snprintf(why->text, sizeof why->text, "%s", text);
-    return 0;
+    if (d->fresnel != MU_FRESNEL_DIELECTRIC)
+        return refuse(why, "transmission",
+                      "true needs a dielectric: fresnel says how much passes, and how far it bends");
+    if (d->sampler != MU_SAMPLE_VISIBLE)
+        return refuse(why, "transmission",
+                      "true needs the visible sampler: the others know reflection alone");
+    return 1;
 }
 
 static int check_histogram(const mu_definition *d, mu_complaint *why) {
@@ -92,9 +91,8 @@ static int check_histogram(const mu_definition *d, mu_complaint *why) {
 
 /* Tables cannot follow a tilted surface that turns its back within less than a cell (measured: 8 % of light off here). */
 static int tilts_too_much(const mu_definition *d) {
-    const double alpha = d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2)) : d->ndf == MU_SHEEN ? 1 : d->alpha;
-    const int has_alpha = alpha > 0 && d->ndf != MU_TABULATED && d->ndf != MU_CUSTOM;
-    return has_alpha && hypot(d->tilt[0], d->tilt[1]) > 4 * alpha;
+    const double width = mu_slope_width(d);
+    return width > 0 && d->ndf != MU_TABULATED && hypot(d->tilt[0], d->tilt[1]) > 4 * width;
 }
 
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
@@ -103,8 +101,7 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
                         "a table has 2 to 256 cells a side");
     if (d->multiple == MU_COMPENSATED && !(d->compensation_panels >= 1 && d->compensation_panels <= 64))
         return complain(why, "compensation_panels", d->compensation_panels, "the azimuth has 1 to 64 panels");
-    why->field = "multiple";
-    const char *right = "";
+    const char *right = NULL;
     if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
         right = "a random walk needs height-correlated masking: that is the walk's own";
     } else if (d->multiple == MU_RANDOM_WALK &&
@@ -118,8 +115,7 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
         right = "compensated needs a tilt of at most 4 alpha, or its tables are too coarse: the random walk "
                 "takes any";
     }
-    snprintf(why->text, sizeof why->text, "%s", right);
-    return !right[0];
+    return right ? refuse(why, "multiple", right) : 1;
 }
 
 /* Members that the library uses as indices. */
@@ -141,21 +137,12 @@ static int check_choices(const mu_definition *d, mu_complaint *why) {
 
 /* The squared tilt, in units of the slope roughness, is a number. */
 static int check_tilt(const mu_definition *d, mu_complaint *why) {
-    double unit = d->ndf == MU_GTR     ? (d->gamma < 1 ? 1 : d->alpha / sqrt(d->gamma))
-                  : d->ndf == MU_PHONG ? sqrt(2 / (d->exponent + 2))
-                  : d->ndf == MU_SHEEN ? 1
-                                       : d->alpha;
-    if (d->ndf == MU_TABULATED) {
-        double mean[2], covariance[3];
-        mu_tabulated_moments(d, mean, covariance);
-        unit = mu_tabulated_spread(covariance);
-    }
-    const int has_unit = d->ndf == MU_PHONG || d->ndf == MU_TABULATED ||
-                         (d->alpha > 0 && d->ndf != MU_FLAT && d->ndf != MU_CUSTOM);
+    const double width = mu_slope_width(d);
+    const double unit = d->ndf == MU_GTR && d->gamma < 1 ? 1 : width; /* of GTR's map, gtr_shape.h */
     for (int i = 0; i < 2; i++) {
         if (!(fabs(d->tilt[i]) <= DBL_MAX))
             return complain(why, "tilt", d->tilt[i], "a mean slope is finite");
-        if (has_unit && fabs(d->tilt[i]) > 1e140 * unit)
+        if (width > 0 && fabs(d->tilt[i]) > 1e140 * unit)
             return complain(why, "tilt", d->tilt[i],
                             "a mean slope is at most 1e140 times the slope roughness, or 0");
     }
@@ -180,12 +167,10 @@ static int check_smith(const mu_definition *d, mu_complaint *why) {
 
 static int check_sampler(const mu_definition *d, mu_complaint *why) {
     if (d->sampler != MU_SAMPLE_BOUNDED) return 1;
-    why->field = "sampler";
-    snprintf(why->text, sizeof why->text, "%s",
-             d->ndf != MU_GGX                     ? "bounded is known of ggx alone"
-             : d->tilt[0] != 0 || d->tilt[1] != 0 ? "bounded needs a microsurface without tilt"
-                                                  : "");
-    return !why->text[0];
+    if (d->ndf != MU_GGX) return refuse(why, "sampler", "bounded is known of ggx alone");
+    if (d->tilt[0] != 0 || d->tilt[1] != 0)
+        return refuse(why, "sampler", "bounded needs a microsurface without tilt");
+    return 1;
 }
 
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
@@ -193,11 +178,8 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
     if (d->ndf == MU_TABULATED && !check_histogram(d, why)) return 0;
     if (!(d->alpha >= 0 && d->alpha <= DBL_MAX))
         return complain(why, "alpha", d->alpha, "a slope roughness is finite and at least 0");
-    if (d->ndf == MU_CUSTOM && !d->custom_f && !d->custom_d) {
-        why->field = "custom_f";
-        snprintf(why->text, sizeof why->text, "custom_f or custom_d is needed where ndf is MU_CUSTOM");
-        return 0;
-    }
+    if (d->ndf == MU_CUSTOM && !d->custom_f && !d->custom_d)
+        return refuse(why, "custom_f", "custom_f or custom_d is needed where ndf is MU_CUSTOM");
     if (d->ndf == MU_GTR && d->alpha > 1)
         return complain(why, "alpha", d->alpha, "gtr is defined for alpha in [0, 1]");
     if (d->ndf == MU_GTR && !(d->gamma >= 0 && d->gamma <= DBL_MAX))

@@ -138,6 +138,12 @@ typedef struct mu_complaint {
 
 /* 1 if the definition is good; otherwise 0, and why. */
 int mu_definition_check(const mu_definition *definition, mu_complaint *why);
+/* The least slope at which D of a checked definition bends, before M: alpha, or what stands in its place; 0 is a mirror,
+ * infinite what a custom distribution does not tell. */
+double mu_slope_width(const mu_definition *definition);
+int mu_is_mirror(const mu_definition *definition);
+/* Are there flakes to be told apart? */
+int mu_is_discrete(const mu_definition *definition);
 /* |det M| by a fused product difference, within [DBL_MIN, DBL_MAX]; 0 for a singular map, also for one so near to it
  * (|det| < 1e-30 max²) that no direction survives, and for one that is not finite. */
 double mu_transform_determinant(const double transform[4]);

@@ -55,7 +55,7 @@ static plan choose(const mu_definition *d) {
     const kernel *const custom = d->MU(custom);
     if (d->ndf == MU_CUSTOM) return (plan){custom, *d, custom ? custom->name : "none"};
     if (d->ndf == MU_TABULATED) return choose_tabulated(d);
-    if (d->ndf == MU_FLAT || (d->alpha == 0 && d->ndf != MU_PHONG)) return (plan){NULL, *d, "mirror"};
+    if (mu_is_mirror(d)) return (plan){NULL, *d, "mirror"};
     switch (d->ndf) {
     case MU_GTR: /* GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma = 0 */
         if (d->gamma == 2 || d->alpha == 1) return as(d, MU_GGX, d->alpha, 2, "ggx (gtr is ggx here)");
@@ -66,7 +66,7 @@ static plan choose(const mu_definition *d) {
     case MU_STD:
         return choose_std(d, d->alpha, d->gamma);
     case MU_PHONG: /* Student-t of b = (gamma - 1) alpha² = 1 */
-        return choose_std(d, sqrt(2 / (d->exponent + 2)), d->exponent / 2 + 2);
+        return choose_std(d, mu_slope_width(d), d->exponent / 2 + 2);
     case MU_DISCRETE_GGX:
         return as(d, MU_GGX, d->alpha, 2, "ggx flakes");
     case MU_DISCRETE_BECKMANN:
@@ -75,10 +75,6 @@ static plan choose(const mu_definition *d) {
         return as(d, d->ndf, d->alpha, d->gamma,
                   d->ndf == MU_SHEEN ? MU_REAL_BITS == 24 ? "sheen table" : "sheen quadrature" : NULL);
     }
-}
-
-static int is_discrete(const mu_definition *d) {
-    return d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN;
 }
 
 /* Does it need what only the full plan has? */
@@ -122,13 +118,13 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     s->table_bytes = p.kernel->table_bytes(&p.definition) + multiple_bytes(&p, d);
     const size_t before = surface_head_bytes() + multiple_bytes(&p, d);
     s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + before);
-    if (is_discrete(d)) {
+    if (mu_is_discrete(d)) {
         /* the lattice knows nothing of M: the same flakes lie on the microsurface however M deforms it */
         s->flake_cdf = d->ndf == MU_DISCRETE_GGX ? mu_flake_cdf_ggx : mu_flake_cdf_beckmann;
         s->flake_cone = d->flake_cone;
         s->flakes = mu_flakes_make(d->flake_density, d->flake_cone / s->unit, d->flake_seed);
     }
-    if (is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    if (mu_is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
     if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
     if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
     MU(multiple_make)(s, d);

@@ -12,6 +12,11 @@
 #include "core/bsdf/padded.h"
 #include "plugin/musurf_compiled.h"
 
+/* One that no M moves. */
+static int is_plain_mirror(const mu_definition *d) {
+    return mu_is_mirror(d) && d->tilt[0] == 0 && d->tilt[1] == 0;
+}
+
 /* The spread of the slopes, which is their unit, lies between a cell's and the whole of it. */
 static int histogram_in_float(const parsed *p) {
     const mu_definition *d = &p->definition;
@@ -29,11 +34,11 @@ static int histogram_in_float(const parsed *p) {
 static int float_suffices(const parsed *p) {
     const mu_definition *d = &p->definition;
     if (d->ndf == MU_TABULATED) return histogram_in_float(p);
-    const double width = mu_slope_width(d);
+    const double width = mu_is_mirror(d) ? 1 : mu_slope_width(d); /* of one, the tilt is all */
     const double tilt = hypot(d->tilt[0], d->tilt[1]) / width;
     const double scale = sqrt(mu_transform_determinant(d->transform));
-    return mu_is_mirror(d) || (tilt < 0x1p30 && width >= 0x1p-30 && width <= 0x1p30 &&
-                               (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
+    return is_plain_mirror(d) || (tilt < 0x1p30 && width >= 0x1p-30 && width <= 0x1p30 &&
+                                  (p->varying || (scale > 0x1p-60 && scale < 0x1p60)));
 }
 
 static const char *transform_class(const parsed *p) {
@@ -46,6 +51,7 @@ static const char *transform_class(const parsed *p) {
 /* Does shading depend on the tangent? */
 static int anisotropic(const parsed *p) {
     const mu_definition *d = &p->definition;
+    if (is_plain_mirror(d)) return 0;
     return p->varying || d->ndf == MU_TABULATED || mu_is_discrete(d) || d->tilt[0] != 0 || d->tilt[1] != 0 ||
            !mu_transform_is_similarity(d->transform);
 }
@@ -57,7 +63,7 @@ static void append(char *text, size_t size, const char *more) {
 
 static void name_plan(musurf_material *m, const char *surface) {
     const parsed *p = &m->parsed;
-    const int mirror = mu_is_mirror(&p->definition);
+    const int mirror = is_plain_mirror(&p->definition);
     snprintf(m->name, sizeof m->name, "%s%s%s%s%s", surface, mirror ? "" : ", ",
              mirror ? "" : transform_class(p), mirror ? "" : " transform",
              m->in_float ? "" : ", double precision");
@@ -110,7 +116,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
         if (!mirror) m->lobes |= MUSURF_GLOSSY_TRANSMISSION;
         if (mirror || p.definition.dielectric == 1) m->lobes |= MUSURF_DELTA_TRANSMISSION;
     }
-    m->needs = (!mirror && anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
+    m->needs = (anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
                (p.varying || p.footprint_from == FOOTPRINT_SLOT ? (uint32_t)MUSURF_NEEDS_SLOTS : 0) |
                (mu_is_discrete(&p.definition) && p.footprint_from != FOOTPRINT_CONSTANT
                     ? (uint32_t)MUSURF_NEEDS_FOOTPRINT

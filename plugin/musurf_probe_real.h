@@ -22,7 +22,7 @@ static musurf_result IN(evaluate)(const IN(mu_surface) * surface, const double *
     IN(mu_closure) closure;
     const int above = IN(mu_bind)(surface, o, NULL, &closure);
     IN(mu_footprint)(&closure, footprint);
-    out->delta = !closure.kernel;
+    out->delta = closure.is_delta != 0;
     if (o[2] * closure.side >= 0) {
         const IN(mu_masking) view = IN(mu_view)(&closure, o);
         out->Lambda = (double)view.Lambda;

@@ -50,7 +50,7 @@ uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *
 /* The glossy lobe toward wi, or 0. A mirror has none; a blurred one does. */
 static inline uint32_t glossy_lobe(const bound *b, const float wi[3]) {
     const int in_float = b->material->in_float != NULL;
-    if (in_float ? !b->closure.f.kernel : !b->closure.d.kernel) return 0;
+    if (in_float ? b->closure.f.is_delta : b->closure.d.is_delta) return 0;
     const float up = wi[2] * (in_float ? b->closure.f.side : (float)b->closure.d.side);
     if (up > 0) return MUSURF_GLOSSY_REFLECTION;
     return up < 0 && b->material->transmits ? MUSURF_GLOSSY_TRANSMISSION : 0;

@@ -102,7 +102,9 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
     if (d->multiple == MU_COMPENSATED && !(d->compensation_panels >= 1 && d->compensation_panels <= 64))
         return complain(why, "compensation_panels", d->compensation_panels, "the azimuth has 1 to 64 panels");
     const char *right = NULL;
-    if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
+    if (d->multiple != MU_SINGLE && mu_is_mirror(d) && (d->tilt[0] != 0 || d->tilt[1] != 0)) {
+        right = "a tilted mirror scatters singly: what it loses has no table, and no walk of one normal ends";
+    } else if (d->multiple == MU_RANDOM_WALK && d->masking != MU_HEIGHT_CORRELATED) {
         right = "a random walk needs height-correlated masking: that is the walk's own";
     } else if (d->multiple == MU_RANDOM_WALK &&
                (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN)) {
@@ -138,13 +140,15 @@ static int check_choices(const mu_definition *d, mu_complaint *why) {
 /* The squared tilt, in units of the slope roughness, is a number. */
 static int check_tilt(const mu_definition *d, mu_complaint *why) {
     const double width = mu_slope_width(d);
-    const double unit = d->ndf == MU_GTR && d->gamma < 1 ? 1 : width; /* of GTR's map, gtr_shape.h */
+    const double unit =
+        width == 0 || (d->ndf == MU_GTR && d->gamma < 1) ? 1 : width; /* flat.c, gtr_shape.h */
     for (int i = 0; i < 2; i++) {
         if (!(fabs(d->tilt[i]) <= DBL_MAX))
             return complain(why, "tilt", d->tilt[i], "a mean slope is finite");
-        if (width > 0 && fabs(d->tilt[i]) > 1e140 * unit)
-            return complain(why, "tilt", d->tilt[i],
-                            "a mean slope is at most 1e140 times the slope roughness, or 0");
+        if (fabs(d->tilt[i]) > 1e140 * unit)
+            return complain(
+                why, "tilt", d->tilt[i],
+                "a mean slope is at most 1e140 times the slope roughness (a mirror's: 1e140), or 0");
     }
     return 1;
 }

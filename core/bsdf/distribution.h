@@ -39,7 +39,8 @@ enum { MU_SHAPE = 20, FROM_BELOW = 65536 };
 enum {
     PICKS = 1,       /* sample_visible uses u[2] */
     ANISOTROPIC = 2, /* turning the microsurface changes it */
-    IS_UNIT_GGX = 4  /* may be sampled within a bound, bounded.h */
+    IS_UNIT_GGX = 4, /* may be sampled within a bound, bounded.h */
+    IS_DELTA = 8     /* one normal: directions have probabilities, not densities */
 };
 
 /* A prepared distribution. What `shape` holds is each one's own business. */
@@ -120,11 +121,8 @@ static inline real closure_transport(const closure *c, int transmitted) {
 /* K / E[K] of the flakes in the closure's footprint around the normal n, of squared length n2 (glint.c). */
 real MU(glint_count)(const closure *c, const real n[3], real n2);
 
-/* A surface without microfacets (mirror.c). */
-void MU(mirror_sample)(const closure *c, const real u[3], sample *out);
-
 struct MU(mu_surface) {
-    const kernel *kernel; /* of the definition's M, and of any M; NULL: a mirror */
+    const kernel *kernel; /* of the definition's M, and of any M */
     const kernel *general;
     base base;
     fresnel fresnel;

@@ -18,7 +18,7 @@ typedef struct MU_SUFFIX(mu_surface) MU_SUFFIX(mu_surface);
 /* A surface seen from wo. Plain bytes: copy and drop it at will while its surface lives. */
 typedef struct MU_SUFFIX(mu_closure) {
     const MU_SUFFIX(mu_surface) * surface;
-    const MU_SUFFIX(mu_kernel) * kernel; /* NULL: a mirror */
+    const MU_SUFFIX(mu_kernel) * kernel;
     MU_SUFFIX(mu_map) map;
     MU_REAL wo[3];         /* turned over if it came from below: all is as seen from wo.z > 0 */
     MU_REAL sigma, lambda; /* view_z times the projected area sigma_M(wo), and times cos Lambda */
@@ -27,6 +27,7 @@ typedef struct MU_SUFFIX(mu_closure) {
     MU_REAL side;   /* +1, or -1: wo was below, and all directions in and out are turned over */
     MU_REAL eta;    /* of a dielectric: n_transmitted / n_incident, seen from wo */
     int importance; /* set it after mu_bind: importance is transported, not radiance. Matters to refraction only */
+    int is_delta;      /* a mirror or a pane: eval answers 0 */
     int has_footprint; /* set by mu_footprint; what follows is only touched if the surface is a discrete one */
     double footprint[6];
 } MU_SUFFIX(mu_closure);

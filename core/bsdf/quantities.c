@@ -12,7 +12,6 @@ typedef MU(mu_pair_values) pair_values;
 masking MU(mu_view)(const closure *c, const real w[3]) {
     const real up[3] = {c->side * w[0], c->side * w[1], c->side * w[2]};
     if (!(up[2] >= 0)) return (masking){0, 0};
-    if (!c->kernel) return (masking){0, up[2]};
     real sigma, lambda;
     c->kernel->view(c, up, &sigma, &lambda);
     const real scale = c->map.view_z;
@@ -23,7 +22,6 @@ normal_values MU(mu_normal)(const closure *c, const real wm[3]) {
     const real m[3] = {c->side * wm[0], c->side * wm[1], c->side * wm[2]};
     if (!(m[2] > 0)) return (normal_values){0, 0, 0};
     const real cosine = dot(c->wo, m);
-    if (!c->kernel) return (normal_values){0, cosine > 0 && c->wo[2] > 0, 0};
     const real sigma = c->sigma / c->map.view_z, d = c->kernel->density(c, m);
     const real n2 = dot(m, m);
     const real of_flakes = c->has_footprint ? smaller(d * MU(glint_count)(c, m, n2), REAL_MAX) : d;
@@ -47,6 +45,6 @@ pair_values MU(mu_pair)(const closure *c, const real wi[3]) {
         const real h[3] = {o[0] + i[0], o[1] + i[1], o[2] + i[2]};
         MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(sqrt(dot(h, h)) / 2, 1), out.F);
     }
-    out.G2 = c->kernel ? c->kernel->shadowing(c, i, transmitted) : 1;
+    out.G2 = c->kernel->shadowing(c, i, transmitted);
     return out;
 }

@@ -52,7 +52,8 @@ static inline void refraction_sample(const closure *c, const real m[3], real fac
     for (int k = 0; k < 3; k++)
         out->weight[k] = weight; /* G2 / G1, over eta² for radiance; 1 - F was the choice */
     out->transmitted = 1, out->rejected = 0, out->eta = eta;
-    if (eta == 1) { /* nothing is bent: a delta lobe that is masked */
+    if (eta == 1 ||
+        TRAITS & IS_DELTA) { /* nothing is bent, or there is one normal: a delta lobe that is masked */
         out->delta = 1, out->pdf = out->pdf_reverse = 1 - F;
         return;
     }

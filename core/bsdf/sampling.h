@@ -70,6 +70,13 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
     const real ratio = smaller(i[2] / open * MUTANT(8, c->wo[2] * scale, shown), 1);
     real f = smaller(d / 4 * smaller(scale / open, saturated), saturated);
     const real choice = plan == PLAN_FULL && c->surface->transmission ? F[0] : 1;
+    if (TRAITS & IS_DELTA) {
+        const real once = smaller(i[2] * shown / open, 1); /* exactly 1 where nothing is masked */
+        for (int k = 0; k < 3; k++) out->weight[k] = choice < 1 ? once : F[k] * once;
+        out->pdf = out->pdf_reverse = choice;
+        out->delta = 1, out->rejected = 0;
+        return;
+    }
     const real own = reflection_pdf(plan, c, sampler, d / 4, m[2] / cosine, i, sigma_i, choice, &out->pdf,
                                     &out->pdf_reverse);
     real weight = ratio; /* F G2 / G1 */
@@ -91,6 +98,7 @@ static inline void reflection_sample(plan_kind plan, const closure *c, mu_sample
 static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sampler, const real u[3],
                              sample *out) {
     *out = (sample){.rejected = 1, .eta = 1};
+    if (TRAITS & IS_DELTA) sampler = MU_SAMPLE_VISIBLE; /* there is one normal to draw */
     real moved[3] = {u[0], u[1], u[2]}, m[3], d;
     if (plan == PLAN_FULL && mixes(sampler)) {
         const real share = c->surface->uniform_share;

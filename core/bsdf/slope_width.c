@@ -33,7 +33,8 @@ double mu_slope_width(const mu_definition *d) {
 }
 
 int mu_is_mirror(const mu_definition *d) {
-    return mu_slope_width(d) == 0;
+    /* a histogram's cells have a width, and it need not be there any more */
+    return d->ndf != MU_TABULATED && mu_slope_width(d) == 0;
 }
 
 int mu_is_discrete(const mu_definition *d) {

@@ -5,13 +5,17 @@
 #include "core/bsdf/tabulated.h"
 
 extern const kernel MU(mu_kernel_ggx), MU(mu_kernel_beckmann), MU(mu_kernel_gtr), MU(mu_kernel_std),
-    MU(mu_kernel_sheen), MU(mu_kernel_tabulated), MU(mu_kernel_gtr_spline);
+    MU(mu_kernel_sheen), MU(mu_kernel_flat), MU(mu_kernel_tabulated), MU(mu_kernel_gtr_spline);
 
 /* One row per mu_ndf; what has none comes down to another, see choose(). */
 static const kernel *const kernels[MU_NDF_COUNT] = {
-    [MU_GGX] = &MU(mu_kernel_ggx),     [MU_BECKMANN] = &MU(mu_kernel_beckmann),
-    [MU_GTR] = &MU(mu_kernel_gtr),     [MU_STD] = &MU(mu_kernel_std),
-    [MU_SHEEN] = &MU(mu_kernel_sheen), [MU_TABULATED] = &MU(mu_kernel_tabulated),
+    [MU_GGX] = &MU(mu_kernel_ggx),
+    [MU_BECKMANN] = &MU(mu_kernel_beckmann),
+    [MU_GTR] = &MU(mu_kernel_gtr),
+    [MU_STD] = &MU(mu_kernel_std),
+    [MU_SHEEN] = &MU(mu_kernel_sheen),
+    [MU_FLAT] = &MU(mu_kernel_flat),
+    [MU_TABULATED] = &MU(mu_kernel_tabulated),
 };
 
 /* The distribution that a definition comes down to, with its own alpha and gamma. */
@@ -53,9 +57,10 @@ static plan spline(const mu_definition *d) {
 
 static plan choose(const mu_definition *d) {
     const kernel *const custom = d->MU(custom);
-    if (d->ndf == MU_CUSTOM) return (plan){custom, *d, custom ? custom->name : "none"};
+    if (d->ndf == MU_CUSTOM && custom) return (plan){custom, *d, custom->name};
+    if (d->ndf == MU_CUSTOM) return as(d, MU_FLAT, 0, 2, "none"); /* not in this precision */
     if (d->ndf == MU_TABULATED) return choose_tabulated(d);
-    if (mu_is_mirror(d)) return (plan){NULL, *d, "mirror"};
+    if (mu_is_mirror(d)) return as(d, MU_FLAT, 0, 2, "mirror");
     switch (d->ndf) {
     case MU_GTR: /* GGX for gamma = 2 and alpha = 1, and GGX of alpha = 1 for gamma = 0 */
         if (d->gamma == 2 || d->alpha == 1) return as(d, MU_GGX, d->alpha, 2, "ggx (gtr is ggx here)");
@@ -83,14 +88,17 @@ static int needs_full(const mu_definition *d) {
            mixes(d->sampler) || folds(d->sampler) || d->multiple == MU_COMPENSATED;
 }
 
+/* A mirror scatters once. */
+static int scatters_once(const plan *p, const mu_definition *d) {
+    return d->multiple == MU_SINGLE || p->kernel->traits & IS_DELTA;
+}
 static size_t multiple_bytes(const plan *p, const mu_definition *d) {
-    return p->kernel ? MU(multiple_bytes)(d) : 0; /* a mirror scatters once */
+    return scatters_once(p, d) ? 0 : MU(multiple_bytes)(d);
 }
 
 size_t MU(mu_surface_bytes)(const mu_definition *definition) {
     const plan p = choose(definition);
-    return surface_head_bytes() + multiple_bytes(&p, definition) +
-           (p.kernel ? p.kernel->table_bytes(&p.definition) : 0);
+    return surface_head_bytes() + multiple_bytes(&p, definition) + p.kernel->table_bytes(&p.definition);
 }
 
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
@@ -101,7 +109,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .sampler = d->sampler,
                    .masking = d->masking,
                    .transmission = d->transmission,
-                   .alpha = R(p.kernel ? p.definition.alpha : 0),
+                   .alpha = R(p.definition.alpha),
                    .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
                    .unit = 1,
                    .tilt = {p.definition.tilt[0], p.definition.tilt[1]},
@@ -114,7 +122,6 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                                                            : d->dielectric);
         s->fresnel.b[i] = R(d->k[i]);
     }
-    if (!p.kernel) return s;
     s->table_bytes = p.kernel->table_bytes(&p.definition) + multiple_bytes(&p, d);
     const size_t before = surface_head_bytes() + multiple_bytes(&p, d);
     s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + before);
@@ -125,9 +132,11 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
         s->flakes = mu_flakes_make(d->flake_density, d->flake_cone / s->unit, d->flake_seed);
     }
     if (mu_is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
-    if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
-    if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
-    MU(multiple_make)(s, d);
+    if (!scatters_once(&p, d)) {
+        if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
+        if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
+        MU(multiple_make)(s, d);
+    }
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
     const int is_uniform = s->kernel == p.kernel && !(p.kernel->traits & ANISOTROPIC) && scale <= DBL_MAX &&
@@ -142,7 +151,7 @@ size_t MU(mu_surface_table_bytes)(const surface *s) {
 }
 real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
     *average = 1;
-    if (!s->kernel || s->kernel != s->kernel->plans[PLAN_COMPENSATED]) return 1;
+    if (s->kernel != s->kernel->plans[PLAN_COMPENSATED]) return 1;
     const mu_albedo *t = multiple_of(s)->albedo;
     const mu_albedo_side *side = &t->side[s->transmission && w[2] < 0];
     const float up[3] = {(float)w[0], (float)w[1], (float)w[2]}, down[3] = {-up[0], -up[1], -up[2]};
@@ -165,12 +174,13 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
         if (!MU(map_make)(&c->map, m, s->tilt, s->unit)) return 0;
         c->kernel = s->general;
     }
+    c->is_delta = (c->kernel->traits & IS_DELTA) != 0;
     c->side = s->transmission && wo[2] < 0 ? R(-1) : R(1);
     c->eta = c->side < 0 ? 1 / s->fresnel.a[0] : s->fresnel.a[0]; /* of a dielectric */
     for (int i = 0; i < 3; i++) c->wo[i] = c->side * wo[i];
     c->sigma = c->lambda = c->least2 = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
-    if (c->kernel && c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
+    if (c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
     return c->wo[2] > 0;
 }
 
@@ -187,17 +197,18 @@ static int is_gtr_kernel(const kernel *k) {
 void MU(mu_blur)(closure *c, real alpha) {
     if (!(alpha > 0)) return;
     const surface *s = c->surface;
-    if (!c->kernel) { /* a mirror takes the roughness alone: M times nothing is nothing */
-        const double identity[4] = {1, 0, 0, 1}, level[2] = {0, 0};
-        MU(map_make)(&c->map, identity, level, (double)alpha);
-        c->kernel = kernels[MU_GGX];
-        if (s->transmission || s->masking != MU_HEIGHT_CORRELATED) c->kernel = c->kernel->plans[PLAN_FULL];
+    const kernel *const ggx = kernels[MU_GGX];
+    int same = PLAN_FULL; /* GGX of the same plan; M is no multiple of 1 any more */
+    while (same < PLAN_COUNT && c->kernel != c->kernel->plans[same]) same++;
+    if (c->is_delta) { /* takes the roughness alone, about its own slope: M times nothing is nothing */
+        real mean[2];
+        map_mean(&c->map, mean);
+        const double identity[4] = {1, 0, 0, 1}, z = (double)c->map.view_z,
+                     tilt[2] = {(double)mean[0] / z, (double)mean[1] / z};
+        MU(map_make)(&c->map, identity, tilt, (double)alpha);
     } else {
         /* gtr of gamma < 1 is measured in slopes of 1, but alpha is what there is of a lobe */
-        const kernel *const ggx = kernels[MU_GGX];
         const int is_gtr = is_gtr_kernel(c->kernel);
-        int same = PLAN_FULL; /* GGX of the same plan; M is no multiple of 1 any more */
-        while (same < PLAN_COUNT && c->kernel != c->kernel->plans[same]) same++;
         const double roughness = is_gtr ? fmin(1, (double)s->alpha / s->unit) : 1;
         map wide = c->map;
         if (c->kernel->plans[PLAN_GENERAL] == kernels[MU_TABULATED]) {
@@ -206,28 +217,20 @@ void MU(mu_blur)(closure *c, real alpha) {
         }
         if (!MU(map_widen)(&wide, roughness, (double)alpha)) return;
         c->map = wide;
-        c->kernel = ggx->plans[same < PLAN_COUNT ? same : PLAN_GENERAL];
     }
+    c->kernel = ggx->plans[same < PLAN_COUNT ? same : PLAN_GENERAL];
     c->alpha = larger(c->alpha, alpha);
-    c->has_footprint = 0;
+    c->has_footprint = c->is_delta = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
 }
 
 void MU(mu_eval)(const closure *c, const real wi[3], value *out) {
-    if (c->kernel) {
-        c->kernel->eval(c, wi, out);
-    } else {
-        *out = (value){0};
-    }
+    c->kernel->eval(c, wi, out);
 }
 
 void MU(mu_sample_with)(const closure *c, mu_sampler sampler, const real u[3], sample *out) {
-    if (c->kernel) {
-        c->kernel->sample(c, sampler, u, out);
-    } else {
-        MU(mirror_sample)(c, u, out);
-    }
+    c->kernel->sample(c, sampler, u, out);
 }
 
 void MU(mu_sample_wi)(const closure *c, const real u[3], sample *out) {

@@ -66,6 +66,10 @@ static inline void fresnel_of(const closure *c, real cosine, real F[3]) {
 #include "core/bsdf/sampling.h"
 
 static inline void eval_of(plan_kind plan, const closure *c, const real wi[3], value *out) {
+    if (TRAITS & IS_DELTA) {
+        *out = (value){0};
+        return;
+    }
     if (plan != PLAN_FULL) {
         reflection_eval(plan, c, c->surface->sampler, wi, out);
         return;

@@ -114,7 +114,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     m->transmits = p.definition.transmission != 0;
     if (m->transmits) {
         if (!mirror) m->lobes |= MUSURF_GLOSSY_TRANSMISSION;
-        if (mirror || p.definition.dielectric == 1) m->lobes |= MUSURF_DELTA_TRANSMISSION;
+        if (mirror || mu_passes_straight(&p.definition)) m->lobes |= MUSURF_DELTA_TRANSMISSION;
     }
     m->needs = (anisotropic(&p) ? (uint32_t)MUSURF_NEEDS_TANGENT : 0) |
                (p.varying || p.footprint_from == FOOTPRINT_SLOT ? (uint32_t)MUSURF_NEEDS_SLOTS : 0) |

@@ -177,6 +177,13 @@ static int check_sampler(const mu_definition *d, mu_complaint *why) {
     return 1;
 }
 
+/* Of GTR with gamma in [1, 2), whose tail has weight at slopes near 1 however small alpha is (as 1 / ln alpha): is alpha so small,
+ * against M too, that map_make cannot hold slopes in units of it? It can down to 2^-500; the rest is for an M of the point. */
+static int vanishes(const mu_definition *d) {
+    const double scale = sqrt(mu_transform_determinant(d->transform));
+    return d->gamma >= 1 && d->gamma < 2 && d->alpha > 0 && d->alpha < 1e-140 * fmax(scale, 1);
+}
+
 int mu_definition_check(const mu_definition *d, mu_complaint *why) {
     if (!check_choices(d, why)) return 0;
     if (d->ndf == MU_TABULATED && !check_histogram(d, why)) return 0;
@@ -188,6 +195,9 @@ int mu_definition_check(const mu_definition *d, mu_complaint *why) {
         return complain(why, "alpha", d->alpha, "gtr is defined for alpha in [0, 1]");
     if (d->ndf == MU_GTR && !(d->gamma >= 0 && d->gamma <= DBL_MAX))
         return complain(why, "gamma", d->gamma, "gtr is defined for finite gamma of at least 0");
+    if (d->ndf == MU_GTR && vanishes(d))
+        return complain(why, "alpha", d->alpha,
+                        "gtr of gamma in [1, 2) needs 0, or at least 1e-140 times the scale of M, or 1e-140");
     if (d->ndf == MU_STD && !(d->gamma > 1.5 && d->gamma <= DBL_MAX))
         return complain(why, "gamma", d->gamma, "std is defined for finite gamma above 1.5");
     if (d->ndf == MU_SHEEN && d->alpha == 0)

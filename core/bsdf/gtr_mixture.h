@@ -71,9 +71,9 @@ static inline real mixture_u(const real *shape, real r, real z, real pick, rando
                 s = exponential_between(d + R(0.5), L, smaller((x + rooted) / rooted, 1));
             else
                 s = exponential_between(d, L, (x + rooted + middle) / middle);
-            const real p = exp(s);
-            u = alpha * (alpha + p) / (1 + alpha * p);
-            ratio = p / ((p + alpha) * (1 + alpha * p) * (flat + root * sqrt(alpha * p) + q * alpha * p));
+            const real p = larger(exp(s - L), REAL_MIN); /* alpha e^s: no alpha is too small for it */
+            u = (a + p) / (1 + p);
+            ratio = 1 / ((1 + a / p) * (1 + p) * (flat + root * sqrt(p) + q * p));
         } else {
             const real p = pow(1 - smaller(x / right, 1), 1 / (1 - d)); /* e^(L-s) */
             u = (1 + a * p) / (1 + p);

@@ -37,8 +37,9 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
         if (y > 40) below = above + ln_a; /* expm1 overflows, but nothing cancels */
         if (y < -40) above = below - ln_a;
     }
-    slope_normal(alpha / g[GTR_UNIT] * sqrt(larger(expm1(above), 0)), sqrt(larger(-expm1(below), REAL_MIN)),
-                 u[1], n);
+    /* alpha sqrt(expm1), which may be 0 times infinity if it is taken apart */
+    const real r = above > 40 ? exp(above / 2 - g[GTR_L]) : alpha * sqrt(larger(expm1(above), 0));
+    slope_normal(r / g[GTR_UNIT], sqrt(larger(-expm1(below), REAL_MIN)), u[1], n);
 }
 
 /* gamma < 2: one GGX of the mixture, then its cap. Not in the paper. */

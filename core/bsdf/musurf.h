@@ -142,6 +142,9 @@ int mu_definition_check(const mu_definition *definition, mu_complaint *why);
  * infinite what a custom distribution does not tell. */
 double mu_slope_width(const mu_definition *definition);
 int mu_is_mirror(const mu_definition *definition);
+/* Does the index of a dielectric that transmits differ from 1 by less than float tells? Then nothing is bent, in float and in
+ * double: what passes is a delta lobe, though the microsurface masks it. */
+int mu_passes_straight(const mu_definition *definition);
 /* Are there flakes to be told apart? */
 int mu_is_discrete(const mu_definition *definition);
 /* |det M| by a fused product difference, within [DBL_MIN, DBL_MAX]; 0 for a singular map, also for one so near to it

@@ -37,6 +37,10 @@ int mu_is_mirror(const mu_definition *d) {
     return d->ndf != MU_TABULATED && mu_slope_width(d) == 0;
 }
 
+int mu_passes_straight(const mu_definition *d) {
+    return d->transmission && (float)d->dielectric == 1;
+}
+
 int mu_is_discrete(const mu_definition *d) {
     return (d->ndf == MU_DISCRETE_GGX || d->ndf == MU_DISCRETE_BECKMANN) && !mu_is_mirror(d);
 }

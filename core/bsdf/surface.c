@@ -115,11 +115,12 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .tilt = {p.definition.tilt[0], p.definition.tilt[1]},
                    .name = p.name};
     s->fresnel.kind = d->fresnel;
+    const double eta = mu_passes_straight(d) ? 1 : d->dielectric;
     for (int i = 0; i < 3; i++) {
         const mu_fresnel_kind kind = d->fresnel;
         s->fresnel.a[i] = R(kind == MU_FRESNEL_SCHLICK     ? d->schlick[i]
                             : kind == MU_FRESNEL_CONDUCTOR ? d->n[i]
-                                                           : d->dielectric);
+                                                           : eta);
         s->fresnel.b[i] = R(d->k[i]);
     }
     s->table_bytes = p.kernel->table_bytes(&p.definition) + multiple_bytes(&p, d);

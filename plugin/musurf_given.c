@@ -121,6 +121,14 @@ void musurf_numbers(const given *g, uint32_t id, size_t count, double *out) {
     memcpy(out, g->by_id[id] ? g->by_id[id]->values : musurf_parameters[id - 1].initial, count * sizeof *out);
 }
 
+int musurf_differs(const given *g, uint32_t id) {
+    const musurf_param *p = &musurf_parameters[id - 1];
+    const musurf_setting *s = g->by_id[id];
+    if (!s || p->flags & MUSURF_NO_DEFAULT) return s != NULL;
+    if (p->kind == MUSURF_CHOICE) return strcmp(s->text, p->initial_choice) != 0;
+    return memcmp(s->values, p->initial, numbers_of(p->kind) * sizeof *p->initial) != 0;
+}
+
 /* Index of the choice; the table's order is that of the core's enumerations. */
 int musurf_choice(const given *g, uint32_t id) {
     const musurf_param *p = &musurf_parameters[id - 1];

@@ -20,6 +20,8 @@ musurf_result musurf_gather(given *g, const musurf_setting *settings, size_t cou
 /* The value given, or the default. */
 double musurf_number(const given *g, uint32_t id);
 void musurf_numbers(const given *g, uint32_t id, size_t count, double *out);
+/* Is it set, to something other than its default? */
+int musurf_differs(const given *g, uint32_t id);
 /* Index of the choice; the table's order is that of the core's enumerations. */
 int musurf_choice(const given *g, uint32_t id);
 

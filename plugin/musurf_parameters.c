@@ -41,8 +41,9 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(3, "roughness", "Roughness"), "Perceptual roughness: alpha is its square. Set this or alpha.",
      SCALAR("", 0, 0, INFINITY, 0, 1, 0.54772255750516612)},
     {HEAD(4, "gamma", "Tail"),
-     "Tail of gtr (0 is the longest, 1 Berry's) and of std (above 1.5): 2 equals ggx, larger is shorter. The "
-     "other distributions have none.",
+     "Tail of gtr (0 is the longest, 1 Berry's; then alpha is 0 or at least 1e-140) and of std (above 1.5): "
+     "2 equals "
+     "ggx, larger is shorter. An error with other distributions.",
      SCALAR("", 0, 0, INFINITY, 0, 10, 2)},
     {HEAD(5, "transform", "Transform"),
      "Linear map M of tangent-plane positions that deforms the microsurface: rows [a c], [b d]; any "
@@ -80,7 +81,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "has the lowest variance.",
      CHOICE("visible", sampler_choices)},
     {HEAD(14, "exponent", "Exponent"),
-     "Exponent n of phong: D = (n + 2) cos^n / 2 pi. The other distributions have none.",
+     "Exponent n of phong: D = (n + 2) cos^n / 2 pi. An error with other distributions.",
      SCALAR("", 0, 0, INFINITY, 0, 1000, 10)},
     {HEAD(15, "alpha_x", "Slope roughness along x"),
      "Slope roughness along the tangent, before rotation; with alpha_y it makes any distribution "
@@ -112,7 +113,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "Covariance of the slopes, [[xx, xy], [xy, yy]], with alpha²/2 for an isotropic surface.",
      VALUES("", MUSURF_MATRIX, 0, -INFINITY, INFINITY, -1, 1, 0.045, 0, 0, 0.045)},
     {HEAD(24, "tilt", "Mean slope"),
-     "Mean slope (dz/dx, dz/dy) of the microsurface, before stretch and transform.",
+     "Mean slope (dz/dx, dz/dy) of the microsurface, mirrors too, before stretch and transform.",
      VALUES("", MUSURF_VECTOR, 0, -INFINITY, INFINITY, -1, 1, 0, 0)},
     {HEAD(25, "A", "Ellipsoid matrix"),
      "The ellipsoid distribution's A, three rows: D = 1 / (pi |det A| |A n| |A^-T m|^4).",

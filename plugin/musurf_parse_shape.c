@@ -30,6 +30,25 @@ static musurf_result misplaced(const given *g, int id, const char *why) {
     return musurf_fail(g->host, MUSURF_INVALID, (uint32_t)id, "%s", why);
 }
 
+/* What only some distributions have: an error where it is set, other than to its default, for one that would ignore it. */
+static musurf_result refuse_unused(const given *g, mu_ndf ndf) {
+    static const struct {
+        uint32_t id;
+        mu_ndf of[2];
+        const char *why;
+    } own[] = {
+        {GAMMA, {MU_GTR, MU_STD}, "belongs to ndf \"gtr\" and \"std\", whose tail it is, but ndf is another"},
+        {EXPONENT, {MU_PHONG, MU_PHONG}, "belongs to ndf \"phong\", but ndf is another"}};
+    for (size_t i = 0; i < sizeof own / sizeof own[0]; i++)
+        if (ndf != own[i].of[0] && ndf != own[i].of[1] && musurf_differs(g, own[i].id))
+            return misplaced(g, (int)own[i].id, own[i].why);
+    static const uint32_t rough[] = {ALPHA, ROUGHNESS, ALPHA_X, ALPHA_Y};
+    for (size_t i = 0; i < sizeof rough / sizeof rough[0]; i++)
+        if (ndf == MU_FLAT && musurf_differs(g, rough[i]))
+            return misplaced(g, (int)rough[i], "belongs to ndf of some roughness, but \"flat\" has none");
+    return MUSURF_OK;
+}
+
 static musurf_result parse_alpha(const given *g, mu_definition *d) {
     if (g->by_id[ALPHA] && g->by_id[ROUGHNESS])
         return misplaced(g, ROUGHNESS, "set alpha or roughness (alpha is roughness squared), not both");
@@ -160,6 +179,8 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     if (result != MUSURF_OK) return result;
     const int ndf = musurf_choice(g, NDF);
     d->ndf = ndf_of[ndf];
+    result = refuse_unused(g, d->ndf);
+    if (result != MUSURF_OK) return result;
     const int foreign = d->ndf == MU_PHONG ? any(g, (const uint32_t[]){ALPHA, ROUGHNESS, 0}) : 0;
     if (foreign) return misplaced(g, foreign, "phong has an exponent in place of a roughness");
     result = parse_histogram(g, d);

@@ -310,8 +310,34 @@ static void footprints_are_asked_for(void **state) {
     assert_true(value[0].f[0] != value[2].f[0] && value[0].pdf == value[2].pdf);
 }
 
+/* An index that float takes for 1 bends nothing: a delta lobe, and the plan says so before it is met. */
+static void straight_lobes_are_announced(void **state) {
+    (void)state;
+    const char *words[] = {"transmission=1 fresnel=dielectric fresnel.dielectric=1",
+                           "transmission=1 fresnel=dielectric fresnel.dielectric=1.000000001",
+                           "transmission=1 fresnel=dielectric fresnel.dielectric=0.99999998",
+                           "transmission=1 fresnel=dielectric fresnel.dielectric=1.0000002",
+                           "transmission=1 fresnel=dielectric fresnel.dielectric=1.000000001 alpha=1e-12",
+                           "transmission=1 fresnel=dielectric fresnel.dielectric=1.0000002 alpha=1e-12"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        musurf_material *material = abi_material(abi_type(1), NULL, words[i]);
+        assert_non_null(material);
+        const uint32_t lobes = abi_plan(abi_type(1), material).lobes;
+        _Alignas(64) unsigned char closure[4096];
+        const float wo[3] = {0.6f, 0, 0.8f}, u[3] = {0.2f, 0.7f, 0.9999f};
+        musurf_sample s = {0};
+        assert_true(abi_type(1)->setup(material, wo, NULL, 0, closure));
+        abi_type(1)->sample(closure, u, MUSURF_ALL_LOBES, &s);
+        assert_true(s.lobe == MUSURF_DELTA_TRANSMISSION || s.lobe == MUSURF_GLOSSY_TRANSMISSION);
+        assert_true(s.lobe & lobes);
+        assert_int_equal((lobes & MUSURF_DELTA_TRANSMISSION) != 0, s.lobe == MUSURF_DELTA_TRANSMISSION);
+        abi_type(1)->release(material);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(straight_lobes_are_announced),
         cmocka_unit_test(tables_are_sound),
         cmocka_unit_test(wrong_settings_are_refused_by_name),
         cmocka_unit_test(hosts_of_any_size_work),

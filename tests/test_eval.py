@@ -8,6 +8,7 @@ Values are compared here with closed forms of GGX only, to fix what the keys mea
 import json
 import math
 import random
+import struct
 import subprocess
 import sys
 import unittest
@@ -239,6 +240,49 @@ class Discrete(unittest.TestCase):
                                   ({"ndf": "discrete_ggx", "flakes": {"seed": 1.5}}, "flakes.seed: 1.5 is no whole number"),
                                   ({"ndf": "discrete_ggx", "footprint": [[0, 0], [1, 0]]}, "footprint: a footprint is its centre")):
             self.assertIn(words, self.ask("double", **parameters)["error"])
+
+
+class Unused(unittest.TestCase):
+    """A parameter that a distribution would ignore is an error, unless it says what the default says."""
+
+    def ask(self, **parameters):
+        return answers(musurf("eval", stdin=[{"material": microfacet(**parameters), "wo": [1, 0, 2], "wm": UP, "wi": [-1, 0, 2]}]))[0]
+
+    def test_refused(self):
+        of = {"gamma": ("gtr", "std"), "exponent": ("phong",)}
+        for ndf in ("ggx", "beckmann", "gtr", "std", "phong", "sheen", "flat", "discrete_ggx", "discrete_beckmann"):
+            for name, users in of.items():
+                with self.subTest(ndf=ndf, name=name):
+                    error = self.ask(ndf=ndf, **{name: 1.75}).get("error")
+                    if ndf in users:
+                        self.assertIsNone(error)
+                    else:
+                        self.assertIn(f"{name}: belongs to ndf", error)
+                    default = {"gamma": 2, "exponent": 10}[name]
+                    self.assertNotIn("error", self.ask(ndf=ndf, **{name: default}))
+        for name in ("alpha", "roughness", "alpha_x", "alpha_y"):
+            self.assertIn(f"{name}: belongs to ndf", self.ask(ndf="flat", **{name: 0.1})["error"])
+        self.assertNotIn("error", self.ask(ndf="flat", alpha=0.3))
+
+    def test_a_mirror_leans(self):
+        for how in ({"ndf": "flat"}, {"ndf": "ggx", "alpha": 0}, {"ndf": "beckmann", "alpha": 0, "transform": [[1, 0], [0, 3]]}):
+            level, leaning, away = (self.ask(tilt=tilt, **how) for tilt in ([0, 0], [0.25, 0], [3, 0]))
+            self.assertTrue(level["delta"] and leaning["delta"])
+            self.assertAlmostEqual(level["sigma"], 2 / 5 ** 0.5, delta=1e-15)
+            self.assertEqual(level["Lambda"], 0)
+            # sigma = wo.m / m.z, m along (-0.25, 0, 1)
+            self.assertAlmostEqual(leaning["sigma"], (2 - 0.25) / 5 ** 0.5, delta=1e-6)
+            self.assertEqual(away["sigma"], 0)
+
+    def test_what_passes_straight_does_so_in_both_precisions(self):
+        for index in (1, 1 + 1e-9, 1 - 1e-9, 1 + 5e-8, 1 + 7e-8, 1 - 2e-8, 1 - 4e-8, 1.0000002, 1.001, 1.5):
+            line = {"material": microfacet(alpha=0.3, transmission=True, fresnel={"dielectric": index}), "wo": [1, 0, 2]}
+            straight = struct.unpack("f", struct.pack("f", index))[0] == 1
+            for precision in ("float", "double"):
+                drawn = answers(musurf("sample", "--precision", precision, "-n", "50", stdin=[line]))
+                passed = [x for x in drawn if x["wi"] and x["wi"][2] < 0]
+                self.assertTrue(passed)
+                self.assertEqual({bool(x.get("delta")) for x in passed}, {straight}, (index, precision))
 
 
 class Partner(unittest.TestCase):

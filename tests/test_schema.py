@@ -16,7 +16,7 @@ BEYOND_A_SCHEMA = ("not both", "phong has an exponent", "needs both n and k", "i
                    "needs alpha above 0", "needs a dielectric", "needs the visible sampler", "needs a histogram",
                    "belongs to ndf", "has no meaning here", "all weights are 0", "is not a row of", "but weights has",
                    "x_min, x_max, y_min, y_max: the second", "cannot be read as an OpenEXR image", "at least 1e-30 wide",
-                   "is no whole number", "belongs to discrete_ggx", "compensated needs", "a random walk",
+                   "is no whole number", "belongs to discrete_ggx", "compensated needs", "a random walk", "a tilted mirror",
                    "spline approximates", "the spline of Appendix A",
                    "spline needs", "spline knows", "bounded is known", "bounded needs")
 

@@ -22,6 +22,12 @@ enum {
     TABULATED_ROOT = 6   /* grid.root */
 };
 
+/* A cell so narrow and so full that no table follows the crease it makes in the masking: more than 1/64 of all. */
+enum { TABULATED_HEAVY = 64 };
+typedef struct tabulated_cell {
+    double p[2], mass; /* its middle */
+} tabulated_cell;
+
 typedef struct tabulated_grid {
     size_t columns, rows;  /* without the empty margins of the histogram */
     size_t last[2];        /* cell (i, j) is that of the histogram at column last[0] - i, row last[1] - j */
@@ -34,6 +40,9 @@ typedef struct tabulated_grid {
     double *moment; /* of the mass times x at the middle of the cell */
     double *reach;  /* of the mass times a bound of |L^-1 p|: that at the middle, plus `farthest` */
     double *mass_below, *reach_below; /* rows + 1 sums over the rows below */
+    size_t heavy;                     /* how many cells are */
+    double light;                     /* the mass of the others */
+    tabulated_cell heavy_cell[TABULATED_HEAVY];
 } tabulated_grid;
 
 /* tabulated_grid.c: mean slope (dz/dx, dz/dy) and covariance xx, xy, yy of a checked definition; bytes for the grid's
@@ -70,14 +79,23 @@ tabulated_place mu_tabulated_draw(const tabulated_grid *grid, const double *sums
 
 /* z Lambda of w, exact: the part of the projected area that faces away (tabulated_smith.c). */
 double mu_tabulated_away(const tabulated_grid *grid, const double w[3]);
+/* The same of the heavy cells alone. */
+double mu_tabulated_heavy(const tabulated_grid *grid, const double w[3]);
 /* p of a visible normal from w, by inversion of the exact areas of rows and cells; `more` makes a uniform number
  * (tabulated_visible.c). */
 void mu_tabulated_visible(const tabulated_grid *grid, const double w[3], const double u[2],
                           double (*more)(void *state), void *state, double p[2]);
 
-/* The same area for float: a table over all directions above the horizon (tabulated_smith.c). */
+/* The same area without them for float: a table over all directions above the horizon (tabulated_smith.c). */
 enum { TABULATED_AZIMUTHS = 256, TABULATED_HEIGHTS = 128, TABULATED_STRIDE = TABULATED_HEIGHTS + 3 };
 size_t mu_tabulated_table_bytes(void);
 void mu_tabulated_table_build(const tabulated_grid *grid, float *table);
+
+/* What tabulated.c keeps in a base's table. */
+typedef struct tabulated {
+    tabulated_grid grid;
+    const float *away;   /* the table; float only */
+    const void *density; /* P22, row by row, reals */
+} tabulated;
 
 #endif

@@ -95,6 +95,24 @@ static double reach_of(const tabulated_grid *g, double x, double y) {
     return hypot(first, (y - g->root[1] * first) / g->root[2]);
 }
 
+/* Cells with more than their share that are narrower, along one side at least, than some ten steps of the table. */
+static void find_heavy(tabulated_grid *g) {
+    const double narrowest = fmin(g->cell[0] / g->root[0], g->cell[1] / g->root[2]);
+    const size_t stride = g->columns + 1;
+    g->heavy = 0, g->light = 0;
+    for (size_t j = 0; j < g->rows; j++)
+        for (size_t i = 0; i < g->columns; i++) {
+            const double m = g->mass[j * stride + i + 1] - g->mass[j * stride + i];
+            if (m > 1.0 / TABULATED_HEAVY && narrowest < 0.25 && g->heavy < TABULATED_HEAVY) {
+                g->heavy_cell[g->heavy++] = (tabulated_cell){{g->origin[0] + ((double)i + 0.5) * g->cell[0],
+                                                              g->origin[1] + ((double)j + 0.5) * g->cell[1]},
+                                                             m};
+            } else {
+                g->light += m;
+            }
+        }
+}
+
 void mu_tabulated_grid_make(tabulated_grid *g, const mu_definition *d, double *sums) {
     const frame f = frame_of(d);
     double mean[2], covariance[3];
@@ -133,6 +151,7 @@ void mu_tabulated_grid_make(tabulated_grid *g, const mu_definition *d, double *s
         g->reach_below[j + 1] = g->reach_below[j] + reach[g->columns];
     }
     g->mean_reach = g->reach_below[g->rows];
+    find_heavy(g);
 }
 
 #endif

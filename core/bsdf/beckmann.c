@@ -2,12 +2,13 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * beckmann.c: Gaussian slopes (Beckmann & Spizzichino 1963), shape-invariant: slopes in units of alpha, no
- * parameter. P22 = exp(-X) / pi with X the squared slope; z Lambda = r/2 ierfc(z/r), exact (Smith 1967).
+ * parameter. P22 = exp(-X) / pi with X the squared slope (Walter et al. 2007, Eq. (25)); z Lambda = r/2 ierfc(z/r), exact (Smith
+ * 1967; their Eq. (26) in other words). D cos: their Eq. (28), (29). Visible normals: cap.h.
  */
 #include "core/bsdf/cap.h"
-#include "core/bsdf/distribution.h"
 #include "core/bsdf/ierfc.h"
 #include "core/bsdf/random.h"
+#include "core/bsdf/shape_invariant.h"
 
 static inline real density(const base *b, const real u[3], real n2) {
     (void)b;
@@ -48,16 +49,6 @@ static inline void sample_visible(const base *b, const real w[3], const real u[3
         visible_from_below(w, r, u, n);
     else
         cap_accepted(b, density, 1, R(4 * INV_PI / 2.71828182845904524), w, u, n);
-}
-
-static size_t table_bytes(const mu_definition *d) {
-    (void)d;
-    return 0;
-}
-
-static double prepare(base *b, const mu_definition *d, void *table) {
-    (void)b, (void)table;
-    return d->alpha;
 }
 
 enum { TRAITS = PICKS };

@@ -2,18 +2,18 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * fresnel.c: reflectance of a flat facet, unpolarised, at the cosine between a direction and the micronormal.
- * Exact for dielectric and conductor, written as sums of squares: no difference of nearly equal numbers
- * anywhere.
+ * Exact for dielectric (Walter et al. 2007, "Microfacet models for refraction through rough surfaces", Eq. (22)) and conductor
+ * (Born & Wolf, Principles of Optics, Section 14.2), written as sums of squares: no difference of nearly equal numbers anywhere.
  */
 #include "core/bsdf/distribution.h"
 
-/* Schlick 1994 */
+/* Schlick 1994, "An inexpensive BRDF model for physically-based rendering" */
 static void schlick(const fresnel *f, real c, real out[3]) {
     const real x = 1 - c, x2 = x * x, x5 = x2 * x2 * x;
     for (int k = 0; k < 3; k++) out[k] = f->a[k] + (1 - f->a[k]) * x5;
 }
 
-/* n_below / n_above = eta, also below 1, where F = 1 beyond the critical angle. */
+/* Walter et al. 2007, Eq. (22). n_below / n_above = eta, also below 1, where F = 1 beyond the critical angle. */
 real MU(fresnel_dielectric)(real eta, real c) {
     const real g2 = (eta - 1) * (eta + 1) + c * c;
     if (!(g2 > 0)) return eta == 1 ? 0 : 1;

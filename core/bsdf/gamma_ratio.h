@@ -4,7 +4,7 @@
  * gamma_ratio.h: Gamma(x - 1/2) / Gamma(x) for x > 1/2, in double, also for huge x, where a difference of lgamma has no
  * digits left.
  *
- * Beyond 60 by the series of Gamma(w + 1/4) / Gamma(w + 3/4) sqrt(w) in 1/w², w = x - 3/4, whose next term is below
+ * Beyond 60 by the series of Gamma(w + 1/4) / Gamma(w + 3/4) sqrt(w) in 1/w², w = x - 3/4 (DLMF 5.11.14), whose next term is below
  * 1e-20 there (coefficients: fitted in 60-digit arithmetic, then recognised as rationals). Below, by the C library, whose
  * tgamma is good to some units in the last place.
  */

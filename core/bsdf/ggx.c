@@ -2,10 +2,11 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * ggx.c: GGX (Trowbridge & Reitz 1975, Walter et al. 2007), shape-invariant: slopes in units of alpha, no
- * parameter. P22 = 1 / (pi (1 + X)²) with X the squared slope; Lambda = (sqrt(1 + X) - 1) / 2.
+ * parameter. P22 = 1 / (pi (1 + X)²) with X the squared slope (Walter et al. 2007, Eq. (33)); Lambda = (sqrt(1 + tan²) - 1) / 2
+ * (their Eq. (34): G1 = 1 / (1 + Lambda)). D cos: their Eq. (35), (36). Visible normals: cap.h.
  */
 #include "core/bsdf/cap.h"
-#include "core/bsdf/distribution.h"
+#include "core/bsdf/shape_invariant.h"
 
 static inline real density(const base *b, const real u[3], real n2) {
     (void)b;
@@ -28,16 +29,6 @@ static inline void sample_slope(const base *b, const real u[3], real n[3]) {
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     (void)b;
     cap_visible(w, 1, u[0], u[1], n);
-}
-
-static size_t table_bytes(const mu_definition *d) {
-    (void)d;
-    return 0;
-}
-
-static double prepare(base *b, const mu_definition *d, void *table) {
-    (void)b, (void)table;
-    return d->alpha;
 }
 
 enum { TRAITS = IS_UNIT_GGX };

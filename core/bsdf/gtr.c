@@ -13,9 +13,7 @@ static inline real z_lambda(const base *b, const real w[3]) {
 #if MU_REAL_BITS == 53
     return mu_gtr_z_lambda(g[GTR_ALPHA], g[GTR_GAMMA], smaller(sqrt(r2) / g[GTR_UNIT], 1e300), z, 16);
 #else
-    const float table_r2 = r2 * g[GTR_TABLE_R2], sum = larger(sqrtf(z * z + table_r2) + z, REAL_MIN);
-    const float ggx = table_r2 / sum;
-    return ggx / 2 * larger(smith_table_at(b->table, (int32_t)g[GTR_OCTAVES], g[GTR_TO_FIRST], ggx / sum), 0);
+    return smith_table_z_lambda(b->table, (int32_t)g[GTR_OCTAVES], g[GTR_TO_FIRST], r2 * g[GTR_TABLE_R2], z);
 #endif
 }
 

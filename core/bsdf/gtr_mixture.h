@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * gtr_mixture.h: which GGX of the mixture (gtr.h) a visible normal of GTR comes from, 0 < gamma < 2. Not in
- * the paper.
+ * the papers.
  *
  * Seen from the direction with r/z = tan, component u shows the area z + sqrt(z² + u r²) (times 1/2), so
  *     T(s) = e^(d s) / ((1 + e^(-s-L)) (1 + e^(s-L))) (z + sqrt(z² + u r²))

@@ -62,8 +62,9 @@ typedef struct tabulated {
 
 static double phi(const void *shape, double v) {
     const tabulated *t = shape;
-    const double z = (1 - v) / (1 + v), r = 2 * sqrt(v) / (1 + v);
-    return mu_gtr_z_lambda(t->alpha, t->gamma, r / t->unit, z, 9) * (1 + v) / v;
+    double r, z;
+    const double entry = smith_table_place(v, &r, &z);
+    return entry * mu_gtr_z_lambda(t->alpha, t->gamma, r / t->unit, z, 9);
 }
 
 void mu_gtr_table_build(float *table, int octaves, double alpha, double gamma, double unit) {

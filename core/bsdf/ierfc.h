@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * ierfc.h: the integral of erfc from c to infinity, ierfc(c) = exp(-c²)/sqrt(pi) - c erfc(c), for c >= 0.
+ * ierfc.h: the integral of erfc from c to infinity, ierfc(c) = exp(-c²)/sqrt(pi) - c erfc(c), for c >= 0 (Abramowitz &
+ * Stegun 7.2.5).
  *
  * That difference loses all digits as c grows. With t = 3/(3 + c), ierfc(c) exp(c²) / t² is smooth on [0, 1]
  * and between 0.03 and 0.56: a Chebyshev series in 2t - 1, whose terms fall below 1e-8 after 14 and below

@@ -10,7 +10,7 @@ size_t MU(multiple_bytes)(const mu_definition *d) {
                                          : head + padded(albedo_bytes(d)) + padded(mu_albedo_scratch(d));
 }
 
-/* 2 F(mu) mu dmu by the midpoint rule: 1e-4 and better, kinks at the critical angle included. */
+/* 2 F(mu) mu dmu, the F_avg of Kulla & Conty 2017, by the midpoint rule: 1e-4 and better, kinks at the critical angle included. */
 static void average_fresnel(const fresnel *f, real eta, real out[3]) {
     double sum[3] = {0};
     const int count = 256;

@@ -97,7 +97,7 @@ typedef struct mu_definition {
     double gamma;        /* the tail: of GTR >= 0, of STD > 3/2; ignored by the others */
     double exponent;     /* of Phong, >= 0; ignored by the others */
     double transform[4]; /* M: the two rows; any finite, non-singular map, mirrors too */
-    double tilt[2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; seed 001's theta_x, theta_y */
+    double tilt[2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; the ellipsoid's theta_x, theta_y */
     mu_sampler sampler;
     mu_masking_form masking;
     /* Of MU_TABULATED, instead of alpha: how often which slope (dz/dx, dz/dy) is met, on a grid over x_min ... x_max, y_min
@@ -153,10 +153,10 @@ double mu_transform_determinant(const double transform[4]);
 /* 1 if M turns, mirrors and scales alike in all directions: to an isotropic microsurface, a scale. */
 int mu_transform_is_similarity(const double transform[4]);
 
-/* The ellipsoid distribution of seed 001, Eq. (1), by its A (three rows): it is GGX of alpha 1 under the transform and
+/* The ellipsoid distribution of Walter et al. 2014 (revised 2016), Eq. (1), by its A (three rows): it is GGX of alpha 1 under the transform and
  * the tilt written here (the family is closed under M: D_A under M is D of A M^-1). 0 if A is singular or not finite. */
 int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]);
-/* A = S R, seed 001 Eq. (2) and (3): roughness along the axes, then rotations in radians. */
+/* A = S R, their Eq. (2) and (3): roughness along the axes, then rotations in radians. */
 void mu_ellipsoid_matrix(const double alpha[2], const double theta[3], double A[9]);
 
 /* Anisotropy of others: from another system's parameters to the M under which GGX (and Beckmann) of slope roughness

@@ -11,7 +11,7 @@
 #ifndef MU_PARTS_H
 #define MU_PARTS_H
 
-#include "core/bsdf/distribution.h"
+#include "core/bsdf/cap.h"
 #include "core/bsdf/random.h"
 
 /* A slope's length as a quotient, part[0] / part[1]. */
@@ -20,6 +20,14 @@ typedef struct parts {
     void (*plain)(const base *b, real u, real part[2]);
     void (*by_length)(const base *b, random_stream *more, real part[2]); /* density times t */
 } parts;
+
+/* A normal by D cos, whose slope has this length. */
+static inline void slope_by_parts(void (*plain)(const base *, real, real[2]), const base *b, const real u[3],
+                                  real n[3]) {
+    real part[2];
+    plain(b, u[0], part);
+    slope_normal(part[0], part[1], u[1], n);
+}
 
 static inline void visible_by_parts(const parts *p, const base *b, const real w[3], const real u[3],
                                     real n[3]) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* quantities.c: the microfacet quantities one by one, for validation and plots; shading needs none of them
- * alone. */
+ * alone. Equations: Atanasov et al. 2022. */
 #include "core/bsdf/snell.h"
 
 typedef MU(mu_masking) masking;
 typedef MU(mu_normal_values) normal_values;
 typedef MU(mu_pair_values) pair_values;
 
-/* sigma_M(w) and Lambda_M(w) = sigma / cos - 1 without the subtraction; w.z = 0 is allowed. */
+/* sigma_M(w), Eq. (12), and Lambda_M(w) = sigma / cos - 1 without the subtraction; w.z = 0 is allowed. */
 masking MU(mu_view)(const closure *c, const real w[3]) {
     const real up[3] = {c->side * w[0], c->side * w[1], c->side * w[2]};
     if (!(up[2] >= 0)) return (masking){0, 0};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * reflection.h: f = F D G2 / (4 cos_o cos_i) with its two pdfs (part of transformed.h). i is the light's direction as
+ * reflection.h: f = F D G2 / (4 cos_o cos_i) (Cook & Torrance 1982; Walter et al. 2007, Eq. (20)) with its two pdfs: the density of
+ * normals, Eq. (27) or D cos, over 4 wo.wm (Walter et al. 2007, Eq. (14) and (38)). Part of transformed.h. i is the light's direction as
  * seen from the side of wo: i.z > 0.
  */
 

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * refraction.h: transmission through the microsurface of a dielectric (part of transformed.h). Walter et al. 2007 Eq. (21);
- * seed 003, Sections 4 to 14; seed 001, Eq. (7). Exact under any map and with tilt.
+ * refraction.h: transmission through the microsurface of a dielectric (part of transformed.h). f: Walter et al. 2007,
+ * "Microfacet models for refraction through rough surfaces", Eq. (21); Golubev 2024, "On microsurface transformations", Eq. (11f),
+ * whose printed factor eta_t²/eta_v² is the wrong way round (against its own Eq. 9c). pdf: visible normals, Eq. (27), times the
+ * Jacobian of Walter et al., Eq. (17). G2: height-correlated on both sides (Walter et al. 2014, Eq. (7), multiply both G1).
+ * Exact under any map and with tilt.
  *
- * The light comes from the other side. Everything is said of i = -wi, turned over to the side of wo (a microsurface seen
- * from below shows the same slopes as its point reflection: sigma and G2 are those of i). With eta = n_i / n_o and the
- * unnormalised half-vector H = +-(eta i - wo), which is normal to the facet that refracts one into the other,
+ * The light comes from the other side. Everything is said of i = -wi, turned over to the side of wo (sigma and G2 are those of
+ * i). With eta = n_i / n_o and the unnormalised half-vector H of snell.h,
  *     f = (wo.H)(i.H) (1 - F) G2 D(H) / (cos_o cos_i |H|^4),      radiance;  eta² times that is importance
  *     pdf = D(H) (1 - F) (wo.H)(i.H) eta² / (sigma_o |H|^4),      pdf_reverse = D(H) (1 - F) (wo.H)(i.H) / (sigma_i |H|^4)
- * so that f(wo,wi) / n_o² is symmetric (seed 003 Eq. 4c): (wo.h - eta i.h)², which stands in the textbook, is |H|².
+ * so that f(wo,wi) / n_o² is symmetric (Golubev 2024, Eq. 4c).
  */
 
 static inline void refraction_fill(const closure *c, const real i[3], real d, real flakes, real f[3],

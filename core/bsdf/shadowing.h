@@ -4,7 +4,7 @@
  * shadowing.h: the forms of Smith's shadowing-masking G2, from sigma and Lambda of two directions on the upper side.
  *
  * Height-correlated (Ross et al. 2005; Heitz 2014): G2 = 1 / (1 + Lambda_o + Lambda_i); separable: G1 G1. Direction- and
- * height-correlated: seed 003's Eq. (13c) has no valid g with g(1) = 1; what is valid, for any g in [0, 1], is
+ * height-correlated: Eq. (13c) of Golubev 2024, "On microsurface transformations", has no valid g with g(1) = 1; what is valid, for any g in [0, 1], is
  *     G2 = 1 / (1 + max(Lambda_o, Lambda_i) + (1 - g) min(Lambda_o, Lambda_i)),   g = 1 / (1 + 4.41 phi)
  * with phi the azimuth between the two (van Ginneken et al. 1998). It never exceeds either G1, and is G1 where both
  * directions agree. phi is taken in the untransformed space, between M^-1 v and M^-1 l, so that G2 stays invariant

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * sheen.c: the inverted Gaussian of cloth (Conty & Kulla 2017): D = (2 + 1/r) sin^(1/r) / 2 pi, r = alpha. With k = 1/2r
+ * sheen.c: the sheen of cloth (Conty & Kulla 2017, "Production friendly microfacet sheen BRDF"): D = (2 + 1/r) sin^(1/r) / 2 pi, r = alpha. With k = 1/2r
  * and x the squared slope, P22 = (k+1)/pi (x / (1+x))^k / (1+x)²: GTR of alpha 0 and gamma -k. Slopes in units of sqrt(k +
  * 1), where most of them lie. Masking is Smith's, exact, not the authors' fit.
  */
@@ -24,8 +24,7 @@ static inline real z_lambda(const base *b, const real w[3]) {
 #if MU_REAL_BITS == 53
     return mu_sheen_z_lambda(s[SHEEN_K], sqrt(r2), z, 16);
 #else
-    const float sum = larger(sqrtf(z * z + r2) + z, REAL_MIN), ggx = r2 / sum;
-    return ggx / 2 * smith_table_at(b->table, (int32_t)s[SHEEN_OCTAVES], s[SHEEN_TO_FIRST], ggx / sum);
+    return smith_table_z_lambda(b->table, (int32_t)s[SHEEN_OCTAVES], s[SHEEN_TO_FIRST], r2, z);
 #endif
 }
 
@@ -44,9 +43,7 @@ static void by_length(const base *b, random_stream *more, real part[2]) {
 }
 
 static inline void sample_slope(const base *b, const real u[3], real n[3]) {
-    real part[2];
-    plain(b, u[0], part);
-    slope_normal(part[0], part[1], u[1], n);
+    slope_by_parts(plain, b, u, n);
 }
 
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {

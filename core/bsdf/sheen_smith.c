@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* sheen_smith.c: the exact Smith integral of the sheen distribution (its authors give a fit), and its float table. Compiled
- * once, in double. Slopes in units of sqrt(k + 1). */
+ * once, in double. Slopes in units of sqrt(k + 1). Not in the papers. */
 #include "core/bsdf/sheen.h"
 #include "core/bsdf/gamma_ratio.h"
 #include "core/bsdf/smith.h"
@@ -31,8 +31,9 @@ double mu_sheen_z_lambda(double k, double r, double z, int digits) {
 }
 
 static double phi(const void *shape, double v) {
-    const double z = (1 - v) / (1 + v), r = 2 * sqrt(v) / (1 + v);
-    return mu_sheen_z_lambda(*(const double *)shape, r, z, 9) * (1 + v) / v;
+    double r, z;
+    const double entry = smith_table_place(v, &r, &z);
+    return entry * mu_sheen_z_lambda(*(const double *)shape, r, z, 9);
 }
 
 void mu_sheen_table_build(float *table, int octaves, double k) {

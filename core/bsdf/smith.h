@@ -46,4 +46,18 @@ static inline float smith_table_at(const float *table, int32_t octaves, float to
     return ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2) + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4;
 }
 
+/* z Lambda where the table is of Lambda over that of unit GGX; r2 in its units. */
+static inline float smith_table_z_lambda(const float *table, int32_t octaves, float to_first, float r2,
+                                         float z) {
+    const float both = sqrtf(z * z + r2) + z, sum = both > FLT_MIN ? both : FLT_MIN, ggx = r2 / sum;
+    const float over = smith_table_at(table, octaves, to_first, ggx / sum);
+    return ggx / 2 * (over > 0 ? over : 0);
+}
+
+/* The direction at v, and what makes z Lambda there an entry of such a table. */
+static inline double smith_table_place(double v, double *r, double *z) {
+    *z = (1 - v) / (1 + v), *r = 2 * sqrt(v) / (1 + v);
+    return (1 + v) / v;
+}
+
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * smith_table.c: masking of one material in float, without quadrature per call. Compiled once.
+ * smith_table.c: masking of one material in float, without quadrature per call. Compiled once. Not in the papers.
  *
  * The singularities of phi lie on the negative v axis, so pieces that are half an octave long converge as 10^-k in the
  * degree: [2^-k, 1.5 2^-k] and [1.5 2^-k, 2^-k+1], each by a polynomial of degree 7 in the mantissa.

@@ -2,8 +2,8 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * snell.h: the geometry of refraction at one facet, in the forms that keep their digits where eta is near 1 and near total
- * reflection. Walter et al. 2007, "Microfacet models for refraction through rough surfaces", Eq. (16) and (40); Golubev, Section
- * 9. Unit vectors.
+ * reflection. Walter et al. 2007, "Microfacet models for refraction through rough surfaces": H is their Eq. (16), i their Eq.
+ * (40), |H|² what stands below in their Eq. (17). Unit vectors. The forms: not in the papers.
  *
  * Both directions are on one side: i is the light's direction turned over, -wi (a microsurface seen from below shows the
  * same slopes as its point reflection). eta = n_i / n_o. The unnormalised half-vector

@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * splitmix.h: the hash behind every random number that is a function of something else: SplitMix64's finaliser (Steele, Lea &
- * Flood 2014, "Fast splittable pseudorandom number generators", OOPSLA, Fig. 16), a bijection of 64 bits whose outputs for
+ * Flood 2014, "Fast splittable pseudorandom number generators", OOPSLA), a bijection of 64 bits whose outputs for
  * neighbouring inputs are unrelated.
  */
 #ifndef MU_SPLITMIX_H

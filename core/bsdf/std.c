@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * std.c: the Student-t distribution (Ribardiere et al. 2017) of every tail gamma > 3/2, shape-invariant: slopes in units of
+ * std.c: the Student-t distribution (Ribardiere et al. 2017, "STD: Student's t-distribution of normals for microfacet based
+ * scattering") of every tail gamma > 3/2, shape-invariant: slopes in units of
  * alpha. P22 = (1 + X/b)^-gamma / pi with b = gamma - 1 and X the squared slope; Phong (n) is that of b alpha² = 1, gamma =
- * n/2 + 2.
+ * n/2 + 2. Samplers of visible normals: not in the papers.
  */
 #include "core/bsdf/cap.h"
 #include "core/bsdf/parts.h"
@@ -44,9 +45,7 @@ static void by_length(const base *b, random_stream *more, real part[2]) {
 }
 
 static inline void sample_slope(const base *b, const real u[3], real n[3]) {
-    real part[2];
-    plain(b, u[0], part);
-    slope_normal(part[0], part[1], u[1], n);
+    slope_by_parts(plain, b, u, n);
 }
 
 /* From far below, w = (r, 0, z), c = -z/r > 1, gamma > 5/2: x = c + s has the density s (1 + (2cs + s²)/B)^(1/2 - gamma), B =

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * std_smith.c: the exact Smith integral of the Student-t distribution, and its float table. Compiled once, in double.
+ * std_smith.c: the exact Smith integral of the Student-t distribution (its authors give a fit), and its float table. Compiled
+ * once, in double. Not in the papers.
  *
  * Q = (1 + X/b)^(1-gamma) in the Smith integral (smith.c) gives
  *     z Lambda = H r J,  J(T) = int_0^1 (1 + 1/(u T)²)^-p du,  T = sqrt(b) r/z,  p = gamma - 3/2

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* tabulated_draw.c: a place in a slope histogram by its sums: inversion of the rows, then of one row. Compiled once, in
- * double. */
+ * double. Not in the papers. */
 #include "core/bsdf/tabulated.h"
 
 #include "core/bsdf/real.h"

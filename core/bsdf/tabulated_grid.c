@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* tabulated_grid.c: from a slope histogram to the sums that answer for any part of a row at once. Compiled once, in
- * double. */
+ * double. Not in the papers, which leave it to a black box (Atanasov et al. 2022, Section 4.5). */
 #include "core/bsdf/tabulated.h"
 
 #include "core/bsdf/real.h"

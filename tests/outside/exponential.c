@@ -7,6 +7,7 @@
  */
 #include "core/bsdf/cap.h"
 #include "core/bsdf/parts.h"
+#include "core/bsdf/shape_invariant.h"
 #include "core/bsdf/smith.h"
 
 static inline real density(const base *b, const real u[3], real n2) {
@@ -23,7 +24,8 @@ static double survival(const void *shape, double x) {
 static inline real z_lambda(const base *b, const real w[3]) {
     (void)b;
     const double r = sqrt((double)flat_square(w));
-    return r > 0 ? R(mu_smith_z_lambda(survival, NULL, -60, r, (double)w[2], MU_REAL_BITS == 24 ? 9 : 16)) : 0;
+    return r > 0 ? R(mu_smith_z_lambda(survival, NULL, -60, r, (double)w[2], MU_REAL_BITS == 24 ? 9 : 16))
+                 : 0;
 }
 
 /* A gamma deviate of shape 2, by inverting Q with Newton's method in ln Q. */
@@ -41,24 +43,12 @@ static void by_length(const base *b, random_stream *more, real part[2]) {
 }
 
 static inline void sample_slope(const base *b, const real u[3], real n[3]) {
-    real part[2];
-    plain(b, u[0], part);
-    slope_normal(part[0], part[1], u[1], n);
+    slope_by_parts(plain, b, u, n);
 }
 
 static inline void sample_visible(const base *b, const real w[3], const real u[3], real n[3]) {
     const parts p = {R(2 * INV_PI), plain, by_length}; /* the mean length is 2 */
     visible_by_parts(&p, b, w, u, n);
-}
-
-static size_t table_bytes(const mu_definition *d) {
-    (void)d;
-    return 0;
-}
-
-static double prepare(base *b, const mu_definition *d, void *table) {
-    (void)b, (void)table;
-    return d->alpha;
 }
 
 enum { TRAITS = PICKS };

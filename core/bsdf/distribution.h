@@ -129,6 +129,7 @@ struct MU(mu_surface) {
     mu_sampler sampler;
     mu_masking_form masking;
     int transmission;
+    int is_delta; /* the distribution's trait */
     real alpha;
     real uniform_share; /* of the samplers that mix with uniform directions */
     double unit;        /* of slopes */

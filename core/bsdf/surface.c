@@ -109,6 +109,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .sampler = d->sampler,
                    .masking = d->masking,
                    .transmission = d->transmission,
+                   .is_delta = (p.kernel->traits & IS_DELTA) != 0,
                    .alpha = R(p.definition.alpha),
                    .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
                    .unit = 1,
@@ -175,7 +176,7 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
         if (!MU(map_make)(&c->map, m, s->tilt, s->unit)) return 0;
         c->kernel = s->general;
     }
-    c->is_delta = (c->kernel->traits & IS_DELTA) != 0;
+    c->is_delta = s->is_delta;
     c->side = s->transmission && wo[2] < 0 ? R(-1) : R(1);
     c->eta = c->side < 0 ? 1 / s->fresnel.a[0] : s->fresnel.a[0]; /* of a dielectric */
     for (int i = 0; i < 3; i++) c->wo[i] = c->side * wo[i];

@@ -93,7 +93,8 @@ struct mu_kernel_d;
 /* What a surface is. Doubles whatever the precision of shading. */
 typedef struct mu_definition {
     mu_ndf ndf;
-    double alpha;        /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror. Sheen: its r, > 0 */
+    double alpha; /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror. Sheen: its r, > 0. GTR with gamma in [1, 2): 0, or
+                     1e-140 and more. The float functions hold widths of slopes (mu_slope_width) of 2^-30 to 2^30 */
     double gamma;        /* the tail: of GTR >= 0, of STD > 3/2; ignored by the others */
     double exponent;     /* of Phong, >= 0; ignored by the others */
     double transform[4]; /* M: the two rows; any finite, non-singular map, mirrors too */

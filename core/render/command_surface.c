@@ -15,10 +15,11 @@
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
-    "surface", "boxes|make|measure|mesh|soup|statistics ...",
+    "surface", "boxes|fit|make|measure|mesh|soup|statistics ...",
     "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
     no_options,
     "  boxes       the exact visibility of square waves and boxes; see musurf surface boxes --help\n"
+    "  fit         the distribution and the map M that explain it best; see musurf surface fit --help\n"
     "  make        a heightfield with the slopes of a distribution; see musurf surface make --help\n"
     "  measure     facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
     "  mesh        its triangles under a linear map as a POV-Ray, PLY or OBJ file; see musurf surface mesh "
@@ -86,9 +87,10 @@ static const struct {
     const char *name;
     int (*run)(int argc, char **argv);
 } commands[] = {
-    {"boxes", mu_command_surface_boxes},     {"make", mu_command_surface_make},
-    {"measure", mu_command_surface_measure}, {"mesh", mu_command_surface_mesh},
-    {"soup", mu_command_surface_soup},       {"statistics", mu_command_surface_statistics},
+    {"boxes", mu_command_surface_boxes}, {"fit", mu_command_surface_fit},
+    {"make", mu_command_surface_make},   {"measure", mu_command_surface_measure},
+    {"mesh", mu_command_surface_mesh},   {"soup", mu_command_surface_soup},
+    {"statistics", mu_command_surface_statistics},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

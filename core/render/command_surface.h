@@ -14,6 +14,7 @@ int mu_command_surface_measure(int argc, char **argv);
 int mu_command_surface_mesh(int argc, char **argv);
 int mu_command_surface_soup(int argc, char **argv);
 int mu_command_surface_statistics(int argc, char **argv);
+int mu_command_surface_fit(int argc, char **argv);
 
 /* The value of the option just met as `least` to `most` finite numbers, commas between; how many, or 0 after a line on
  * stderr. */

@@ -14,7 +14,7 @@ $(RENDER_OBJECTS) $(BUILD)/obj/core/render/main.o: CPPFLAGS += $(RENDER_CFLAGS)
 
 $(BUILD)/libmusurf_render.a: $(RENDER_OBJECTS)
 	rm -f $@ && $(AR) rcs $@ $^
-$(BUILD)/musurf: $(BUILD)/obj/core/render/main.o $(BUILD)/libmusurf_render.a
+$(BUILD)/musurf: $(BUILD)/obj/core/render/main.o $(BUILD)/libmusurf_render.a $(BUILD)/libmusurf.a
 	$(CC) $(LDFLAGS) $^ $(RENDER_LIBS) -o $@
 $(BUILD)/musurf_oiio.so: $(BUILD)/obj/core/render/module_oiio.o
 	$(CXX) -shared $(LDFLAGS) $^ $(shell pkg-config --libs OpenImageIO 2>/dev/null) -o $@

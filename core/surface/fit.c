@@ -10,8 +10,8 @@
 
 #include "core/surface/minimise.h"
 
-/* Of the mean score per facet. An error of a hundredth of a standard one at ten thousand independent facets. */
-static const double still = 1e-6;
+/* Of the mean score per facet, whose standard error is of order 1/sqrt(independent facets): a hundredth of it at 10^6. */
+static const double still = 1e-5;
 
 typedef struct mu_work {
     mu_fit *fit;

@@ -118,6 +118,7 @@ _Bool mu_fit_errors(mu_fitted *f, mu_likelihood *l, uint32_t blocks) {
     memcpy(&f->error, told, sizeof f->error);
     if (f->error.rotation > 0.78) f->error.rotation = NAN; /* any direction */
     if (f->at_end) f->error.gamma = f->error.exponent = NAN;
+    if (f->at_end && (c->ndf == MU_GTR || c->ndf == MU_SHEEN)) f->error.alpha = NAN;
     const size_t xx = offsetof(mu_told, transform) / sizeof(double), mean = offsetof(mu_told, mean) / sizeof(double);
     double unlike[P];
     for (int k = 0; k < P; k++) unlike[k] = derivatives[xx][k] - derivatives[xx + 2][k];

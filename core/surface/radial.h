@@ -6,8 +6,8 @@
  * Fits ask for ln P22 at many thousand slopes for hundreds of parameters. Any distribution of the library enters as a
  * black box: its D is asked at MU_RADIAL radii, ln P22 = ln (D cos^4) is interpolated in x = ln r by cubic Hermite
  * polynomials, and the share of steeper facets is the integral of 2 pi r^2 P22 dx over these. Slopes are tan theta,
- * unit 1. With nodes h = 0.05 apart and derivatives of fourth order the interpolation is off by h^4/384 times a fourth
- * derivative of some units, 1e-8, and the integral by Simpson's h^4/2880 of that.
+ * unit 1. With nodes h = 0.05 apart and derivatives of fourth order the interpolation is off by h^4/384 = 1.6e-8
+ * times a fourth derivative: at most 2 gamma of powers, 16 r^2/alpha^2 of Gaussians; the integral by no more.
  *
  * Below the first radius and beyond the last ln P22 goes on linearly in x, as a power. Where D is too small for a
  * double, it goes on linearly in r^2, as a Gaussian does.

@@ -16,8 +16,8 @@ static int rising(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The step of which all sampled heights are multiples, to a thousandth; 0 if there is none: floats of any height are
- * multiples of the smallest among their last places, which is no step if the range holds more than 10^6 of it. */
+/* The step of which all sampled heights are multiples, to a fiftieth (16 bits of range, rounded to floats, leave 0.008);
+ * 0 if there is none. Gaps of less than 10^-6 of the range are rounding to floats. */
 static double height_step(const mu_heightfield *f, double *room) {
     const uint64_t heights = (uint64_t)f->n * f->n;
     const uint32_t count = heights < MU_SAMPLE ? (uint32_t)heights : MU_SAMPLE;
@@ -25,11 +25,12 @@ static double height_step(const mu_heightfield *f, double *room) {
     qsort(room, count, sizeof *room, rising);
     const double range = room[count - 1] - room[0];
     double step = range;
-    for (uint32_t k = 1; k < count; k++) /* gaps that rounding to floats makes are none */
+    for (uint32_t k = 1; k < count; k++)
         if (room[k] - room[k - 1] > 1e-6 * range) step = fmin(step, room[k] - room[k - 1]);
+    step = range / nearbyint(range / step); /* one gap tells less */
     for (uint32_t k = 1; k < count; k++) {
         const double times = (room[k] - room[0]) / step;
-        if (fabs(times - nearbyint(times)) > 1e-3 * fmax(1, times / 256)) return 0;
+        if (fabs(times - nearbyint(times)) > 0.02) return 0;
     }
     return step;
 }
@@ -104,7 +105,7 @@ _Bool mu_fit_examine(mu_fit *fit, const mu_slopes *s, const double *sample, uint
     }
     if (few > mostly) {
         snprintf(fit->reason, sizeof fit->reason,
-                 "facets have few orientations, as boxes, pyramids or terraces do: %d slopes hold %.0f %% of them",
+                 "facets have few orientations, as boxes, pyramids, gratings or terraces do: %d slopes hold %.0f %% of them",
                  cells, 100 * few);
         return fit->verdict = MU_FIT_REFUSED, 0;
     }

@@ -17,8 +17,9 @@ enum { TRANSFORM, OPEN, KEEP, TOLERANCE, TABULATED, OUTPUT };
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "fit the surface under M = [a c; b d], row by row (default: 1,0,0,1)"},
     {"open", NULL, "the surface does not repeat: no facets across its last row and column"},
-    {"keep", "Q", "share of facets, around their mean slope, whose slopes matter; of the steepest rest only the\n"
-                  "number does, for tails are clipped by makers and instruments (default: 0.999)"},
+    {"keep", "Q",
+     "share of facets, around their mean slope, whose slopes matter; of the steepest rest only the\n"
+     "number does, for tails are clipped by makers and instruments (default: 0.999)"},
     {"tolerance", "T", "share of facets that a fit may misplace beyond what scatter does (default: 0.02)"},
     {"tabulated", "FILE", "also write the slopes as a material of ndf tabulated, whatever the verdict"},
     {"o", "FILE", "write the material, if one explains the surface"},
@@ -26,23 +27,31 @@ static const mu_option options[] = {
 
 static const mu_usage usage = {
     "surface fit", "FILE [--transform A,C,B,D] [--open] [-o material.json] ...",
-    "Finds the distribution and the map M that explain the facets of a heightfield best, or says why none does.\n",
+    "Finds the distribution and the map M that explain the facets of a heightfield best, or says why none "
+    "does.\n",
     options,
-    "Candidates are ggx, beckmann, gtr, std, phong and sheen under every symmetric M of det M = 1 with every mean\n"
-    "slope, and gtr under M of any scale; an ellipsoid is ggx. They are fitted by maximum likelihood. Errors are\n"
+    "Candidates are ggx, beckmann, gtr, std, phong and sheen under every symmetric M of det M = 1 with every "
+    "mean\n"
+    "slope, and gtr under M of any scale; an ellipsoid is ggx. They are fitted by maximum likelihood. Errors "
+    "are\n"
     "standard errors from the scatter over blocks of the surface, for neighbouring facets are alike.\n"
     "out, one line of JSON:\n"
     "  \"verdict\"   explained, flat (all heights are equal), or refused, and then \"reason\"\n"
     "  \"material\"  to paste into a scene; \"tilt\" is the mean slope before M\n"
     "  \"effective_facets\"  how many independent facets tell as much; \"correlation\": to 1/e, in cells\n"
     "  \"candidates\", best first:\n"
-    "    \"behind\"     Bayesian criterion, likelihoods taken per effective facet, less the best one's: 10 is much\n"
+    "    \"behind\"     Bayesian criterion, likelihoods taken per effective facet, less the best one's: 10 "
+    "is much\n"
     "    \"held_out\"   ln likelihood per facet of the half that was not used\n"
-    "    \"values\", \"errors\"  alpha_x >= alpha_y, slope roughness along rotation and across; M: xx, xy, yy\n"
+    "    \"values\", \"errors\"  alpha_x >= alpha_y, slope roughness along rotation and across; M: xx, xy, "
+    "yy\n"
     "    \"isotropic\", \"level\"  the probability of as much anisotropy, or mean slope, by chance\n"
-    "    \"residual\"   facets of the half not used, in bins of equal mass of the fit: by steepness, by azimuth from\n"
-    "                 alpha_x's axis, by both; relative \"rms\", total \"variation\", and what \"scatter\" makes of it\n"
-    "A candidate explains the surface if no variation is above T and twice the scatter. Exit code 1: refused.\n"};
+    "    \"residual\"   facets of the half not used, in bins of equal mass of the fit: by steepness, by "
+    "azimuth from\n"
+    "                 alpha_x's axis, by both; relative \"rms\", total \"variation\", and what \"scatter\" "
+    "makes of it\n"
+    "A candidate explains the surface if no variation is above T and twice the scatter. Exit code 1: "
+    "refused.\n"};
 
 typedef struct mu_asked {
     mu_fit fit;
@@ -88,7 +97,8 @@ static int answer(mu_asked *asked, const mu_slopes *s) {
     double outside = 0;
     int code = MU_EXIT_OK;
     mu_fit_slopes(&asked->fit, s);
-    if (asked->fit.verdict == MU_FIT_NO_MEMORY) return mu_refuse(&usage, "%s: not enough memory", asked->file);
+    if (asked->fit.verdict == MU_FIT_NO_MEMORY)
+        return mu_refuse(&usage, "%s: not enough memory", asked->file);
     const _Bool found = asked->fit.verdict != MU_FIT_REFUSED;
     if (asked->tabulated) {
         if (!mu_surface_fit_tabulate(s, &json, &outside))

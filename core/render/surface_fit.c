@@ -132,7 +132,8 @@ static void put_candidate(const mu_fit *fit, const mu_fitted *f, mu_json *json) 
     mu_json_free(&inner);
 }
 
-_Bool mu_surface_fit_report(const mu_fit *fit, const char *file, const char *tabulated, double outside, FILE *out) {
+_Bool mu_surface_fit_report(const mu_fit *fit, const char *file, const char *tabulated, double outside,
+                            FILE *out) {
     static const char *const verdicts[] = {"explained", "flat", "refused", "refused"};
     mu_json all = {0}, one = {0};
     mu_json_begin(&all);

@@ -9,7 +9,8 @@
 #include "core/surface/fit.h"
 
 /* One line about all candidates, the best first; file: what was fitted, tabulated: a file written, or NULL. */
-_Bool mu_surface_fit_report(const mu_fit *fit, const char *file, const char *tabulated, double outside, FILE *out);
+_Bool mu_surface_fit_report(const mu_fit *fit, const char *file, const char *tabulated, double outside,
+                            FILE *out);
 /* The best candidate, or flat, as a material's JSON object (not ended). */
 void mu_surface_fit_material(const mu_fit *fit, mu_json *json);
 /* Writes what mu_json_write would, whole or not at all. */

@@ -43,11 +43,14 @@ static void put_table(mu_json *json, const double *bounds, const double *weights
         json->no_memory = 1;
         return;
     }
-    size_t at = (size_t)snprintf(text, room, "{\"bounds\": [%.17g, %.17g, %.17g, %.17g], \"weights\": [", bounds[0],
-                                 bounds[1], bounds[2], bounds[3]);
+    size_t at = (size_t)snprintf(text, room, "{\"bounds\": [%.17g, %.17g, %.17g, %.17g], \"weights\": [",
+                                 bounds[0], bounds[1], bounds[2], bounds[3]);
     for (int k = 0; k < BINS * BINS; k++)
-        at += (size_t)snprintf(text + at, room - at, "%s%.17g%s", k % BINS ? ", " : k ? ", [" : "[", weights[k],
-                               k % BINS == BINS - 1 ? "]" : "");
+        at += (size_t)snprintf(text + at, room - at, "%s%.17g%s",
+                               k % BINS ? ", "
+                               : k      ? ", ["
+                                        : "[",
+                               weights[k], k % BINS == BINS - 1 ? "]" : "");
     at += (size_t)snprintf(text + at, room - at, "]}");
     mu_json_raw(json, "histogram", text, at);
     free(text);

@@ -28,7 +28,8 @@ static double number(const mu_candidate *c, const double *parameters, int shape)
 
 /* z of a number; kept off the ends, where nothing moves. */
 static double search(const mu_candidate *c, int shape, double w) {
-    const double part = (w - c->low[shape]) / (c->high[shape] - c->low[shape]), in = fmin(fmax(part, 0.02), 0.98);
+    const double part = (w - c->low[shape]) / (c->high[shape] - c->low[shape]),
+                 in = fmin(fmax(part, 0.02), 0.98);
     return log(in / (1 - in));
 }
 
@@ -86,7 +87,8 @@ _Bool mu_candidate_at_end(const mu_candidate *c, const double *parameters) {
     return 0;
 }
 
-double mu_candidate_matrix(const mu_candidate *c, const mu_cloud *cloud, const double *parameters, double b[4]) {
+double mu_candidate_matrix(const mu_candidate *c, const mu_cloud *cloud, const double *parameters,
+                           double b[4]) {
     const double *m = cloud->shape;
     const double k = c->scale ? parameters[MU_AT_REST] : log(m[0] * m[3] - m[1] * m[2]) / 2; /* det S = 1 */
     const double d = parameters[MU_AT_D];
@@ -96,7 +98,8 @@ double mu_candidate_matrix(const mu_candidate *c, const mu_cloud *cloud, const d
 
 /* The symmetric root of G G^T, by Cayley and Hamilton. */
 static void polar(const double g[4], double out[3]) {
-    const double xx = g[0] * g[0] + g[1] * g[1], xy = g[0] * g[2] + g[1] * g[3], yy = g[2] * g[2] + g[3] * g[3];
+    const double xx = g[0] * g[0] + g[1] * g[1], xy = g[0] * g[2] + g[1] * g[3],
+                 yy = g[2] * g[2] + g[3] * g[3];
     const double r = fabs(g[0] * g[3] - g[1] * g[2]), by = sqrt(xx + yy + 2 * r);
     out[0] = (xx + r) / by, out[1] = xy / by, out[2] = (yy + r) / by;
 }

@@ -43,11 +43,13 @@ mu_definition mu_candidate_definition(const mu_candidate *c, const double *param
 /* One of them stands at the end of its range: the family's limit fits better than the family. */
 _Bool mu_candidate_at_end(const mu_candidate *c, const double *parameters);
 /* B, two rows; returns k. */
-double mu_candidate_matrix(const mu_candidate *c, const mu_cloud *cloud, const double *parameters, double b[4]);
+double mu_candidate_matrix(const mu_candidate *c, const mu_cloud *cloud, const double *parameters,
+                           double b[4]);
 
 /* What a scene file would say. */
 typedef struct mu_told {
-    double alpha, gamma, exponent; /* of the distribution; alpha of ggx, beckmann, std: sqrt(alpha_x alpha_y) */
+    double alpha, gamma,
+        exponent; /* of the distribution; alpha of ggx, beckmann, std: sqrt(alpha_x alpha_y) */
     double alpha_x, alpha_y, rotation; /* singular values of alpha S, the larger first, and its direction */
     double mean[2];                    /* slope */
     double tilt[2];                    /* M mean */

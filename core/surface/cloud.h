@@ -47,11 +47,11 @@ typedef struct mu_point_set {
 } mu_point_set;
 
 typedef struct mu_cloud {
-    double centre[2], shape[4]; /* s = centre + shape v; shape symmetric */
-    double edge;                /* of |v| */
-    double correlation;         /* of how steep facets are, to 1/e, in cells */
-    mu_bin_moments *moments;    /* [fold, or all][bin and tail] */
-    uint32_t *counts;           /* [patch][bin and tail] */
+    double centre[2], shape[4];      /* s = centre + shape v; shape symmetric */
+    double edge;                     /* of |v| */
+    double correlation;              /* of how steep facets are, to 1/e, in cells */
+    mu_bin_moments *moments;         /* [fold, or all][bin and tail] */
+    uint32_t *counts;                /* [patch][bin and tail] */
     mu_point_set sets[MU_FOLDS + 1]; /* the folds, then all */
 } mu_cloud;
 

@@ -74,7 +74,8 @@ static _Bool fit_one(mu_work *w, mu_fitted *f) {
     w->l.scores = w->scores;
     const _Bool sure = mu_fit_errors(f, &w->l, w->fit->blocks);
     w->l.scores = NULL;
-    return mu_fit_residual(f, (const double(*)[MU_MOST_PARAMETERS])halves, &w->cloud, w->s, w->fit->blocks, &w->l) &&
+    return mu_fit_residual(f, (const double(*)[MU_MOST_PARAMETERS])halves, &w->cloud, w->s, w->fit->blocks,
+                           &w->l) &&
            sure;
 }
 
@@ -99,7 +100,8 @@ static void rank(mu_fit *fit) {
     fit->effective = fit->facets / alike;
     for (int k = 0; k < fit->count; k++) {
         mu_fitted *f = &fit->fitted[k];
-        f->criterion = -2 * f->likelihood / alike + mu_candidate_parameters(f->candidate) * log(fit->effective);
+        f->criterion =
+            -2 * f->likelihood / alike + mu_candidate_parameters(f->candidate) * log(fit->effective);
         f->explains = explains(fit, f);
     }
     qsort(fit->fitted, (size_t)fit->count, sizeof *fit->fitted, better);
@@ -122,7 +124,8 @@ static void work(mu_work *w) {
     if (!fit->blocks) {
         fit->verdict = MU_FIT_REFUSED;
         snprintf(fit->reason, sizeof fit->reason,
-                 "too few independent facets: they are alike over %.1f cells, and 6 x 6 blocks of 4 such lengths need "
+                 "too few independent facets: they are alike over %.1f cells, and 6 x 6 blocks of 4 such "
+                 "lengths need "
                  "%.0f cells a side, not %.0f",
                  fit->correlation, ceil(24 * fit->correlation), side);
         return;
@@ -166,8 +169,9 @@ void mu_fit_slopes(mu_fit *fit, const mu_slopes *s) {
             work(&w);
         } else {
             fit->verdict = MU_FIT_REFUSED;
-            snprintf(fit->reason, sizeof fit->reason,
-                     "slopes lie on a line, as those of a grating or of ridges: no invertible M spreads them");
+            snprintf(
+                fit->reason, sizeof fit->reason,
+                "slopes lie on a line, as those of a grating or of ridges: no invertible M spreads them");
         }
     }
     free(sample);

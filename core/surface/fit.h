@@ -32,14 +32,14 @@ typedef struct mu_partition {
 
 typedef struct mu_residual {
     mu_partition steepness, azimuth, joint; /* azimuth from the axis of alpha_x, in the frame of u */
-    double kolmogorov;                      /* largest difference of the shares below a steepness, at 1000 places */
+    double kolmogorov; /* largest difference of the shares below a steepness, at 1000 places */
     double facets;
 } mu_residual;
 
 typedef struct mu_fitted {
     const mu_candidate *candidate;
     double parameters[MU_MOST_PARAMETERS];
-    mu_told told, error; /* error: standard errors; NaN where there is none */
+    mu_told told, error;     /* error: standard errors; NaN where there is none */
     double isotropic, level; /* probability of as large an anisotropy, mean slope, by chance (Wald) */
     double likelihood;       /* ln, sum over facets */
     double held_out;         /* ln, mean per facet of the fold not used */
@@ -57,7 +57,7 @@ typedef struct mu_fit {
     double tolerance; /* of total variation */
     /* out */
     mu_verdict verdict;
-    char reason[MU_REASON]; /* of a refusal */
+    char reason[MU_REASON];                /* of a refusal */
     double facets, effective, correlation; /* effective: independent ones; correlation length in cells */
     double step;                           /* of the heights; 0 if they have none */
     uint32_t blocks;                       /* a side */

@@ -37,10 +37,11 @@ void mu_fit_blame(const mu_fitted *f, double tolerance, char reason[MU_REASON]) 
     const double turn = f->told.rotation * 360 / two_pi;
     const mu_partition *worst = r->steepness.variation > r->azimuth.variation ? &r->steepness : &r->azimuth;
     if (r->joint.variation > worst->variation) worst = &r->joint;
-    const int head = snprintf(reason, MU_REASON,
-                              "no candidate explains the facets: best is %s, which misplaces %.1f %% of them "
-                              "(tolerance %.1f %%, scatter %.1f %%); ",
-                              f->candidate->name, 100 * worst->variation, 100 * tolerance, 100 * worst->noise);
+    const int head =
+        snprintf(reason, MU_REASON,
+                 "no candidate explains the facets: best is %s, which misplaces %.1f %% of them "
+                 "(tolerance %.1f %%, scatter %.1f %%); ",
+                 f->candidate->name, 100 * worst->variation, 100 * tolerance, 100 * worst->noise);
     char *rest = reason + head;
     const size_t room = MU_REASON - (size_t)head;
     /* A wave of amplitude a misplaces a/pi of the facets; a skew that is met in one ring in five as much of that ring. */
@@ -52,7 +53,8 @@ void mu_fit_blame(const mu_fitted *f, double tolerance, char reason[MU_REASON]) 
                  skew.degrees + turn, skew.amplitude);
     else
         snprintf(rest, room,
-                 "their steepness is of another kind: the flattest twentieth holds %.1f %%, the middle tenth %.1f %%, "
+                 "their steepness is of another kind: the flattest twentieth holds %.1f %%, the middle tenth "
+                 "%.1f %%, "
                  "the steepest twentieth %.1f %%",
                  100 * r->steepness.share[0], 100 * (r->steepness.share[9] + r->steepness.share[10]),
                  100 * r->steepness.share[MU_SHARES - 1]);

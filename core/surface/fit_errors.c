@@ -8,7 +8,8 @@
 #include "core/surface/minimise.h"
 
 enum { TOLD = sizeof(mu_told) / sizeof(double), P = MU_MOST_PARAMETERS };
-_Static_assert((int)MU_MOST_PARAMETERS <= (int)MU_MOST_UNKNOWNS, "minimise.h holds fewer unknowns than a candidate has");
+_Static_assert((int)MU_MOST_PARAMETERS <= (int)MU_MOST_UNKNOWNS,
+               "minimise.h holds fewer unknowns than a candidate has");
 
 typedef struct mu_asked {
     mu_likelihood *l;
@@ -80,7 +81,8 @@ static double between(const double *a, const double *b, const double *covariance
 }
 
 /* Two numbers that are 0 by chance: chi^2 of two degrees of freedom, whose tail is exp(-x/2). */
-static double chance(double x, double y, const double *gx, const double *gy, const double *covariance, int n) {
+static double chance(double x, double y, const double *gx, const double *gy, const double *covariance,
+                     int n) {
     const double xx = between(gx, gx, covariance, n), xy = between(gx, gy, covariance, n),
                  yy = between(gy, gy, covariance, n), det = xx * yy - xy * xy;
     return det > 0 ? exp(-(yy * x * x - 2 * xy * x * y + xx * y * y) / det / 2) : NAN;
@@ -91,7 +93,8 @@ _Bool mu_fit_errors(mu_fitted *f, mu_likelihood *l, uint32_t blocks) {
     /* At the end of its range a number has no error, and its own limit is what is fitted. */
     const int all = mu_candidate_parameters(c), n = f->at_end ? all - c->shapes : all;
     const mu_cloud *cloud = l->cloud;
-    double curvature[P * P], h[P * P], inverse[P * P], j[P * P], hj[P * P], covariance[P * P], told[TOLD], g[P];
+    double curvature[P * P], h[P * P], inverse[P * P], j[P * P], hj[P * P], covariance[P * P], told[TOLD],
+        g[P];
     double derivatives[TOLD][P] = {{0}};
     mu_told nothing;
     for (int k = 0; k < TOLD; k++) told[k] = NAN;
@@ -101,7 +104,7 @@ _Bool mu_fit_errors(mu_fitted *f, mu_likelihood *l, uint32_t blocks) {
     mu_asked asked = {l, &cloud->sets[MU_FOLDS]};
     mu_likelihood_at(l, asked.set, f->parameters, g);
     scatter(l, blocks, n, j);
-    double (*const scores)[P] = l->scores;
+    double(*const scores)[P] = l->scores;
     l->scores = NULL;
     mu_hessian(ask, &asked, all, f->parameters, 1e-3, curvature);
     l->scores = scores;
@@ -119,11 +122,13 @@ _Bool mu_fit_errors(mu_fitted *f, mu_likelihood *l, uint32_t blocks) {
     if (f->error.rotation > 0.78) f->error.rotation = NAN; /* any direction */
     if (f->at_end) f->error.gamma = f->error.exponent = NAN;
     if (f->at_end && (c->ndf == MU_GTR || c->ndf == MU_SHEEN)) f->error.alpha = NAN;
-    const size_t xx = offsetof(mu_told, transform) / sizeof(double), mean = offsetof(mu_told, mean) / sizeof(double);
+    const size_t xx = offsetof(mu_told, transform) / sizeof(double),
+                 mean = offsetof(mu_told, mean) / sizeof(double);
     double unlike[P];
     for (int k = 0; k < P; k++) unlike[k] = derivatives[xx][k] - derivatives[xx + 2][k];
     f->isotropic = chance(f->told.transform[0] - f->told.transform[2], f->told.transform[1], unlike,
                           derivatives[xx + 1], covariance, n);
-    f->level = chance(f->told.mean[0], f->told.mean[1], derivatives[mean], derivatives[mean + 1], covariance, n);
+    f->level =
+        chance(f->told.mean[0], f->told.mean[1], derivatives[mean], derivatives[mean + 1], covariance, n);
     return 1;
 }

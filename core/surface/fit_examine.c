@@ -8,8 +8,9 @@
 #include "core/surface/fit.h"
 
 enum { FEW = 16, LEAST_SIDE = 32 };
-static const double mostly = 0.5;    /* of facets in few orientations: no density */
-static const double coarsest = 0.1;  /* step of heights over the median slope: slopes are a lattice that bins see */
+static const double mostly = 0.5; /* of facets in few orientations: no density */
+static const double coarsest =
+    0.1; /* step of heights over the median slope: slopes are a lattice that bins see */
 
 static int rising(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -71,8 +72,8 @@ _Bool mu_fit_examine(mu_fit *fit, const mu_slopes *s, const double *sample, uint
     if (low == high) return fit->verdict = MU_FIT_FLAT, 0;
     if (mu_slopes_side(s) < LEAST_SIDE) {
         snprintf(fit->reason, sizeof fit->reason,
-                 "too few facets: %.0f; %d x %d cells are the least from which blocks tell an error", fit->facets,
-                 LEAST_SIDE, LEAST_SIDE);
+                 "too few facets: %.0f; %d x %d cells are the least from which blocks tell an error",
+                 fit->facets, LEAST_SIDE, LEAST_SIDE);
         return fit->verdict = MU_FIT_REFUSED, 0;
     }
     double *room = malloc(MU_SAMPLE * sizeof *room);
@@ -95,17 +96,20 @@ _Bool mu_fit_examine(mu_fit *fit, const mu_slopes *s, const double *sample, uint
     fit->step = height_step(&s->f, room);
     const double few = in_few_cells(sample, count, extent / 1000, room, &cells);
     free(room);
-    const double *m = s->cotransform, step = fit->step * sqrt((m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3]) / 2);
+    const double *m = s->cotransform,
+                 step = fit->step * sqrt((m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3]) / 2);
     if (step > coarsest * median && few < 0.9) {
-        snprintf(fit->reason, sizeof fit->reason,
-                 "heights come in steps of %.3g, and the median slope is %.3g: slopes are a lattice of steps, no "
-                 "distribution; a finer height scale is needed, at most %.3g",
-                 fit->step, median, coarsest * median * fit->step / step);
+        snprintf(
+            fit->reason, sizeof fit->reason,
+            "heights come in steps of %.3g, and the median slope is %.3g: slopes are a lattice of steps, no "
+            "distribution; a finer height scale is needed, at most %.3g",
+            fit->step, median, coarsest * median * fit->step / step);
         return fit->verdict = MU_FIT_REFUSED, 0;
     }
     if (few > mostly) {
         snprintf(fit->reason, sizeof fit->reason,
-                 "facets have few orientations, as boxes, pyramids, gratings or terraces do: %d slopes hold %.0f %% of them",
+                 "facets have few orientations, as boxes, pyramids, gratings or terraces do: %d slopes hold "
+                 "%.0f %% of them",
                  cells, 100 * few);
         return fit->verdict = MU_FIT_REFUSED, 0;
     }

@@ -15,8 +15,8 @@ typedef struct mu_frame {
     mu_radial law;
 } mu_frame;
 
-static _Bool make_frame(mu_frame *frame, const mu_candidate *c, const mu_cloud *cloud, const double *parameters,
-                        mu_likelihood *l) {
+static _Bool make_frame(mu_frame *frame, const mu_candidate *c, const mu_cloud *cloud,
+                        const double *parameters, mu_likelihood *l) {
     const mu_definition d = mu_candidate_definition(c, parameters);
     mu_told told;
     mu_candidate_tell(c, cloud, parameters, &told);
@@ -45,7 +45,8 @@ static void count_facet(const mu_frame *frame, const double s[2], uint32_t *coun
     fine[within(below, FINE)]++;
 }
 
-static void partition(mu_partition *out, const uint32_t *counts, uint32_t from, uint32_t bins, uint32_t blocks) {
+static void partition(mu_partition *out, const uint32_t *counts, uint32_t from, uint32_t bins,
+                      uint32_t blocks) {
     const uint32_t wide = MU_PATCHES / blocks;
     double all = 0, inside[MU_PATCHES * MU_PATCHES] = {0}, squares = 0;
     *out = (mu_partition){.bins = bins};

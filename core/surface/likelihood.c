@@ -90,7 +90,8 @@ static void keep(mu_likelihood *l, uint32_t bin, double weight, const double *gr
     sum[bin] += weight;
 }
 
-double mu_likelihood_at(mu_likelihood *l, const mu_point_set *set, const double *parameters, double *gradient) {
+double mu_likelihood_at(mu_likelihood *l, const mu_point_set *set, const double *parameters,
+                        double *gradient) {
     const mu_candidate *c = l->candidate;
     const double *m = l->cloud->shape;
     double b[4], value = 0, one[MU_MOST_PARAMETERS] = {0};

@@ -27,6 +27,7 @@ typedef struct mu_likelihood {
 } mu_likelihood;
 
 /* The mean over the set's facets of - ln likelihood, and its gradient; INFINITY where the distribution is refused. */
-double mu_likelihood_at(mu_likelihood *l, const mu_point_set *set, const double *parameters, double *gradient);
+double mu_likelihood_at(mu_likelihood *l, const mu_point_set *set, const double *parameters,
+                        double *gradient);
 
 #endif

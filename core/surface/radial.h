@@ -50,8 +50,14 @@ static inline mu_radial_place mu_radial_find(double x) {
     }
     const int k = (int)place;
     const double t = place - k, u = 1 - t;
-    return (mu_radial_place){k, u * u * (1 + 2 * t), t * t * (1 + 2 * u), h * t * u * u, -h * t * t * u,
-                             6 * t * u / h, u * (1 - 3 * t), t * (3 * t - 2)};
+    return (mu_radial_place){k,
+                             u * u * (1 + 2 * t),
+                             t * t * (1 + 2 * u),
+                             h * t * u * u,
+                             -h * t * t * u,
+                             6 * t * u / h,
+                             u * (1 - 3 * t),
+                             t * (3 * t - 2)};
 }
 
 static inline double mu_radial_value(const mu_radial *table, const mu_radial_place *p) {

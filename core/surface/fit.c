@@ -159,7 +159,8 @@ void mu_fit_slopes(mu_fit *fit, const mu_slopes *s) {
     fit->count = 0;
     fit->verdict = MU_FIT_EXPLAINED;
     fit->reason[0] = 0;
-    fit->step = fit->effective = fit->correlation = 0;
+    fit->step = 0;
+    fit->effective = fit->correlation = NAN;
     fit->blocks = 0;
     const uint32_t count = sample ? mu_cloud_sample(s, sample) : 0;
     if (!sample) {

@@ -57,11 +57,12 @@ typedef struct mu_fit {
     double tolerance; /* of total variation */
     /* out */
     mu_verdict verdict;
-    char reason[MU_REASON];                /* of a refusal */
-    double facets, effective, correlation; /* effective: independent ones; correlation length in cells */
-    double step;                           /* of the heights; 0 if they have none */
-    uint32_t blocks;                       /* a side */
-    int count;                             /* of candidates, best first */
+    char reason[MU_REASON]; /* of a refusal */
+    double facets, effective,
+        correlation; /* effective: independent ones; correlation length in cells; NaN: unknown */
+    double step;     /* of the heights; 0 if they have none */
+    uint32_t blocks; /* a side */
+    int count;       /* of candidates, best first */
     mu_fitted fitted[MU_CANDIDATES];
 } mu_fit;
 

@@ -64,8 +64,8 @@ class Camera:
         columns, rows = np.meshgrid(np.arange(self.width + 1.0), np.arange(self.height + 1.0))
         d = self.rays(columns, rows)
         down = d[..., 2] < 0
-        t = np.where(down, -self.eye[2] / np.where(down, d[..., 2], -1), np.inf)
-        away = np.abs(self.eye[:2] + t[..., None] * d[..., :2]).max(-1) - plate.length / 2
+        t = -self.eye[2] / np.where(down, d[..., 2], -1)
+        away = np.where(down, np.abs(self.eye[:2] + t[..., None] * d[..., :2]).max(-1) - plate.length / 2, np.inf)
 
         def all_corners(where):
             return where[:-1, :-1] & where[1:, :-1] & where[:-1, 1:] & where[1:, 1:]
@@ -79,12 +79,12 @@ def vector(p):
 
 
 def povray_scene(plate, camera, mesh, environment, bounces):
-    """Text of the POV-Ray scene. `mesh` is the period's mesh2 file. After `bounces` reflections light is lost.
+    """Text of the POV-Ray scene. `mesh` is the period's mesh2 file, `environment` the path of an EXR or HDR image. After `bounces` reflections light is lost.
 
     POV-Ray's spherical map has its pole along y and starts elsewhere: two quarter turns bring it to musurf's convention
     (+z up, the middle column towards +x). That this is right is measured: where both see the sky, they agree.
     """
-    sky = "rgb 1" if environment is None else f'image_map {{ exr "{environment}" map_type 1 interpolate 2 }} rotate x*90 rotate z*180'
+    sky = "rgb 1" if environment is None else f'image_map {{ {environment.suffix[1:]} "{environment}" map_type 1 interpolate 2 }} rotate x*90 rotate z*180'
     text = [f"// musurf: {plate.name}, M = {plate.m.tolist()}", "#version 3.7;",
             f"global_settings {{ assumed_gamma 1 max_trace_level {bounces + 1} }}",
             f"camera {{ perspective location {vector(camera.eye)} direction {vector(camera.ahead)}",

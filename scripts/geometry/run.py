@@ -33,9 +33,13 @@ class Progress:
         self.done += 1
 
 
-def environment(options, build):
-    """A photograph of a surrounding; a missing one is an error that says what to do."""
+def surrounding(options, build):
+    """A photograph; a missing one is an error that says what to do. None for white."""
+    if options.environment == "white":
+        return None
     path = pathlib.Path(options.environment or build / "environments" / "forest.exr").resolve()
+    if path.suffix not in (".exr", ".hdr"):
+        raise ValueError(f"{path}: --environment takes an .exr or .hdr image that both programs read")
     if not path.exists():
         raise FileNotFoundError(2, "no such image; `make deps` fetches the photographs, --environment names another", str(path))
     return path
@@ -43,7 +47,8 @@ def environment(options, build):
 
 def plates(options):
     length = options.periods * options.size
-    return [pair.Plate(name, np.array(m, float), options.size, length) for name, m in MAPS], pair.Camera(length, options.width, options.width * 3 // 4)
+    chosen = [(name, m) for name, m in MAPS if not options.map or name in options.map]
+    return [pair.Plate(name, np.array(m, float), options.size, length) for name, m in chosen], pair.Camera(length, options.width, options.width * 3 // 4)
 
 
 def one(plate, camera, surfaces, material, sky, options, musurf, folder, progress):
@@ -88,7 +93,7 @@ def run(options, build):
     musurf, folder, start = build / "musurf", pathlib.Path(options.output), time.monotonic()
     folder.mkdir(parents=True, exist_ok=True)
     povray.find()
-    sky = environment(options, build)
+    sky = surrounding(options, build)
     law = {"ndf": options.ndf, "alpha": options.alpha, **({"gamma": options.gamma} if options.gamma is not None else {})}
     stages, camera = plates(options)
     progress = Progress(options.realisations * (1 + 2 * len(stages)) + len(COMPARISONS) * len(stages) + 1)
@@ -102,7 +107,7 @@ def run(options, build):
     found = [one(stage, camera, surfaces, material, sky, options, musurf, folder, progress) for stage in stages]
     angles = charts.angles([(entry["name"], [(row["comparison"], row["by_angle"]) for row in entry["rows"]]) for entry in found], folder / "angles.png")
     result = {"command": options.command, "surface": {**law, "size": options.size, "correlation": options.correlation, "realisations": options.realisations},
-              "environment": sky.name, "pixels": [camera.width, camera.height], "rays_per_pixel": options.fine ** 2, "samples": 2 * options.samples,
+              "environment": sky.name if sky else "white", "pixels": [camera.width, camera.height], "rays_per_pixel": options.fine ** 2, "samples": 2 * options.samples,
               "material": material, "fit": fitted, "plates": found, "angles": angles, "seconds": round(time.monotonic() - start, 1)}
     write(folder / "geometry.json", json.dumps(result, indent=1))
     write(folder / "fragment.html", tables.fragment(result, folder))
@@ -140,7 +145,8 @@ def main(arguments, build):
     parser.add_argument("--fine", type=count(1), default=24, help="POV-Ray's rays along a pixel's side")
     parser.add_argument("--samples", type=count(1), default=1024, help="musurf's samples in a pixel, in each of two renders")
     parser.add_argument("--bins", type=count(1), default=8, help="of the view's angle")
-    parser.add_argument("--environment", metavar="FILE", help="latitude-longitude EXR; default: the photographed forest")
+    parser.add_argument("--map", action="append", choices=[name for name, _ in MAPS], help="only this M; may be repeated")
+    parser.add_argument("--environment", metavar="FILE", help="latitude-longitude .exr or .hdr, or white; None: the photographed forest")
     parser.add_argument("-o", metavar="DIR", dest="output", default=str(build / "geometry"))
     options = parser.parse_args(arguments)
     if options.quick:

@@ -28,7 +28,7 @@ def fragment(result, folder):
     return (
         "<h2>Rendered against explicit geometry</h2>\n"
         f"<p>A square plate of explicit mirror facets ({html.escape(surface['ndf'])}, α = {surface['alpha']:g}, {surface['size']}² cells a period, vertices baked under M, "
-        f"{surface['realisations']} realisations) traced by POV-Ray in the photographed surrounding {html.escape(result['environment'])}, and the same plate as two "
+        f"{surface['realisations']} realisations) traced by POV-Ray surrounded by {html.escape(result['environment'])}, and the same plate as two "
         "triangles with the material that <code>musurf surface fit</code> found in the first surface, under the same M. Same camera, "
         f"{width} × {height} pixels, {result['rays_per_pixel']} rays a pixel there and {result['samples']} samples here. "
         f"Fitted: <code>{html.escape(json.dumps(result['material']))}</code>.</p>\n"

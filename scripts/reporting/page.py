@@ -60,6 +60,11 @@ def make(options, build):
         data["efficiency"] = json.loads((folder / "efficiency.json").read_text())
         sections.append(f'<section id="efficiency">{(folder / "fragment.html").read_text()}</section>')
         links.append('<a href="#efficiency">Masking and sampling</a>')
+    if options.geometry:
+        folder = pathlib.Path(options.geometry)
+        data["geometry"] = json.loads((folder / "geometry.json").read_text())
+        sections.append(f'<section id="geometry">{(folder / "fragment.html").read_text()}</section>')
+        links.append('<a href="#geometry">Explicit geometry</a>')
     if options.mutants:
         path = pathlib.Path(options.mutants)
         data["mutants"] = mutants.load(path) if path.exists() else None
@@ -85,6 +90,7 @@ def main(arguments, build):
     parser.add_argument("--validate", metavar="DIR", help="output folder of scripts/validate")
     parser.add_argument("--curves", metavar="DIR", help="output folder of scripts/curves")
     parser.add_argument("--efficiency", metavar="DIR", help="output folder of scripts/efficiency")
+    parser.add_argument("--geometry", metavar="DIR", help="output folder of scripts/geometry-pair")
     parser.add_argument("--mutants", metavar="FILE", help="mutants.json of tests/test_mutants.py; if it is not there, how to make it")
     parser.add_argument("--stability", metavar="DIR", help="output folder of scripts/stability; likewise")
     parser.add_argument("--json", metavar="FILE", help="the same as data")

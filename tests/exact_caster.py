@@ -11,10 +11,10 @@ import numpy as np
 
 def height_at(h, x, y):
     """The surface over any points."""
-    n = len(h)
+    nx, ny = h.shape
     i, j = np.floor(x).astype(int), np.floor(y).astype(int)
     u, w = x - i, y - j
-    h00, h10, h01, h11 = (h[(i + a) % n, (j + b) % n] for a, b in ((0, 0), (1, 0), (0, 1), (1, 1)))
+    h00, h10, h01, h11 = (h[(i + a) % nx, (j + b) % ny] for a, b in ((0, 0), (1, 0), (0, 1), (1, 1)))
     lower = h00 + u * (h10 - h00) + w * (h01 - h00)
     upper = h11 + (1 - u) * (h01 - h11) + (1 - w) * (h10 - h11)
     return np.where(u + w < 1, lower, upper)
@@ -22,14 +22,14 @@ def height_at(h, x, y):
 
 def on_line(h, family, line, along):
     """The surface on the line x = line, y = line or x + y = line, at y = along, x = along, x = along."""
-    n, j = len(h), np.floor(along).astype(int)
+    (nx, ny), j = h.shape, np.floor(along).astype(int)
     t = along - j
     if family == 0:
-        a, b = h[line % n, j % n], h[line % n, (j + 1) % n]
+        a, b = h[line % nx, j % ny], h[line % nx, (j + 1) % ny]
     elif family == 1:
-        a, b = h[j % n, line % n], h[(j + 1) % n, line % n]
+        a, b = h[j % nx, line % ny], h[(j + 1) % nx, line % ny]
     else:
-        a, b = h[j % n, (line - j) % n], h[(j + 1) % n, (line - j - 1) % n]
+        a, b = h[j % nx, (line - j) % ny], h[(j + 1) % nx, (line - j - 1) % ny]
     return (1 - t) * a + t * b
 
 

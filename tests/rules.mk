@@ -18,4 +18,5 @@ run-test: all $(TEST_PROGRAMS)
 # Speed, as ratios measured in one run; one that falls short of its goal fails.
 bench: all $(BENCHMARKS)
 	@failed=0; for program in $(BENCHMARKS); do BUILD=$(BUILD) $$program || failed=1; done; \
-	BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py || failed=1; exit $$failed
+	BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py || failed=1; \
+	BUILD=$(BUILD) $(PYTHON) tests/bench_tracers.py || failed=1; exit $$failed

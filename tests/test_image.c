@@ -14,9 +14,12 @@
 
 #include <cmocka.h>
 
+#include "core/render/exr_write.h"
 #include "core/render/image.h"
+#include "core/render/image_read.h"
 #include "core/render/integrator.h"
 #include "tests/film_fixture.h"
+#include "tests/uniform.h"
 
 static const mu_image_info info = {
     .scene_file = "plates.json",
@@ -184,6 +187,50 @@ static void exr_half(void **state) {
     exr_round_trip(1);
 }
 
+enum { NOISE_WIDTH = 64, NOISE_BLOCKS = 2000, NOISE_LINES = 16 * NOISE_BLOCKS };
+
+static exr_result_t no_head(exr_context_t exr, const void *context) {
+    (void)exr, (void)context;
+    return EXR_ERR_SUCCESS;
+}
+
+static void fill_noise(void *context, uint32_t y, uint32_t lines, size_t stride, mu_exr_element *out) {
+    (void)stride;
+    memcpy(out, (const uint32_t *)context + (size_t)y * NOISE_WIDTH,
+           (size_t)lines * NOISE_WIDTH * sizeof *out);
+}
+
+/*
+ * Blocks of random bits that zeros make a little shorter compressed, or not, or just as long: 1024 floats of which
+ * 0 to 39 are 0. Of the two thousand some dozens are just as long; the library would write those as no one reads them.
+ */
+static void exr_incompressible(void **state) {
+    (void)state;
+    uniform random = {20};
+    mu_error error = {.text = ""};
+    uint32_t *bits = calloc((size_t)NOISE_LINES * NOISE_WIDTH, sizeof *bits);
+    for (size_t k = 0; k < (size_t)NOISE_LINES * NOISE_WIDTH; ++k) bits[k] = (uint32_t)uniform_bits(&random);
+    for (size_t block = 0; block < NOISE_BLOCKS; ++block)
+        memset(bits + block * 16 * NOISE_WIDTH, 0, block % 40 * sizeof *bits);
+    const mu_exr_channel channel = {"Y", EXR_PIXEL_FLOAT};
+    const mu_exr_image image = {.part = "noise",
+                                .width = NOISE_WIDTH,
+                                .height = NOISE_LINES,
+                                .treatment = EXR_PERCEPTUALLY_LINEAR,
+                                .channels = &channel,
+                                .channel_count = 1,
+                                .head = no_head,
+                                .fill = fill_noise,
+                                .context = bits};
+    int width, height;
+    assert_true(mu_exr_write(in_folder("noise.exr"), &image, &error));
+    float *read = mu_image_read_plane(in_folder("noise.exr"), NULL, &width, &height, &error);
+    assert_true(read && width == NOISE_WIDTH && height == NOISE_LINES);
+    assert_memory_equal(read, bits, (size_t)NOISE_LINES * NOISE_WIDTH * sizeof *bits);
+    free(read);
+    free(bits);
+}
+
 /* Values beyond what the channel can hold become its largest number, never infinity; unsampled pixels are
  * black. */
 static void exr_extremes(void **state) {
@@ -261,9 +308,9 @@ static void png_holds_the_curve(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exr_float),           cmocka_unit_test(exr_half),
-        cmocka_unit_test(exr_extremes),        cmocka_unit_test(tone_curve),
-        cmocka_unit_test(png_holds_the_curve),
+        cmocka_unit_test(exr_float),    cmocka_unit_test(exr_half),
+        cmocka_unit_test(exr_extremes), cmocka_unit_test(exr_incompressible),
+        cmocka_unit_test(tone_curve),   cmocka_unit_test(png_holds_the_curve),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

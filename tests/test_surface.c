@@ -107,7 +107,7 @@ static void pyramid_bounds(void **state) {
     for (int k = 0; k < 4; k++) {
         const uint32_t n = sizes[k];
         double *h = rough(n, 1, 5);
-        const mu_heightfield f = {h, n};
+        const mu_heightfield f = {h, n, n};
         mu_pyramid p;
         assert_true(mu_pyramid_make(&p, &f));
         for (uint64_t trial = 0; trial < 300; trial++) {
@@ -130,7 +130,7 @@ static void pyramid_bounds(void **state) {
 /* ----------------------------------------------------------------------------------------------- brute force */
 
 static void baked(const mu_heightfield *f, const double m[4], int64_t i, int64_t j, double p[3]) {
-    const int64_t n = f->n;
+    const int64_t n = f->nx;
     p[0] = m[0] * (double)i + m[1] * (double)j;
     p[1] = m[2] * (double)i + m[3] * (double)j;
     p[2] = f->h[((i % n + n) % n) * n + (j % n + n) % n];
@@ -172,7 +172,7 @@ static _Bool sees(const mu_heightfield *f, const mu_sight *s, uint32_t i, uint32
     }
     cross(a, b, normal);
     if (!((normal[2] < 0 ? -1 : 1) * dot(normal, s->w) > 0)) return 0;
-    const int64_t n = f->n;
+    const int64_t n = f->nx;
     for (int64_t x = -around * n; x < (around + 1) * n; x++)
         for (int64_t y = -around * n; y < (around + 1) * n; y++)
             for (int upper = 0; upper < 2; upper++) {
@@ -193,7 +193,7 @@ static void caster_equals_brute_force(void **state) {
     (void)state;
     const uint32_t n = 11; /* not a multiple of the lanes */
     double *h = rough(n, 0.8, 7);
-    const mu_heightfield f = {h, n};
+    const mu_heightfield f = {h, n, n};
     mu_caster *caster = mu_caster_make(&f);
     uint8_t visible[16];
     int seen = 0, hidden = 0;
@@ -234,7 +234,7 @@ static void single_rays_equal_rows(void **state) {
     (void)state;
     const uint32_t n = 50;
     double *h = rough(n, 1.5, 11);
-    const mu_heightfield f = {h, n};
+    const mu_heightfield f = {h, n, n};
     mu_caster *caster = mu_caster_make(&f);
     uint8_t visible[50];
     for (int k = 0; k < 6; k++) {
@@ -270,7 +270,7 @@ static void periodic(void **state) {
     double *h = rough(n, 1, 12), *moved = malloc((size_t)n * n * sizeof *moved);
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t j = 0; j < n; j++) moved[(i + 5) % n * n + (j + 17) % n] = h[i * n + j];
-    const mu_heightfield f = {h, n}, g = {moved, n};
+    const mu_heightfield f = {h, n, n}, g = {moved, n, n};
     mu_caster *a = mu_caster_make(&f), *b = mu_caster_make(&g);
     const mu_sight s = {.m = {1, 2, 0, 1}, .w = {3, 1, 1}, .u = 0.25, .v = 0.5};
     mu_cast *ca, *cb;
@@ -289,7 +289,7 @@ static void periodic(void **state) {
 static void horizon_and_zenith(void **state) {
     (void)state;
     double *h = rough(8, 1, 13), flat[16] = {0};
-    const mu_heightfield f = {h, 8}, level = {flat, 4};
+    const mu_heightfield f = {h, 8, 8}, level = {flat, 4, 4};
     mu_caster *caster = mu_caster_make(&f), *plain = mu_caster_make(&level);
     mu_sight s = {.m = {1, 0, 0, 1}, .w = {0, 0, 1}, .u = 0.25, .v = 0.5};
     mu_cast *cast;

@@ -39,7 +39,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 /* Corners of a triangle of any period; corner 1 is where u is 1 in L and 0 in U. */
 static void baked(const mu_mirrors *s, int64_t i, int64_t j, int upper, double p[3][3]) {
     static const int corner[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {0, 1}, {1, 0}}};
-    const int64_t n = s->f.n;
+    const int64_t n = s->f.nx;
     for (int k = 0; k < 3; k++) {
         const int64_t a = i + corner[upper][k][0], b = j + corner[upper][k][1];
         p[k][0] = s->m[0] * (double)a + s->m[1] * (double)b;
@@ -58,7 +58,7 @@ static void point(const mu_mirrors *s, const mu_spot *at, double o[3]) {
 /* The distance of the nearest triangle, by Moeller and Trumbore's intersection (1997); infinite: none. */
 static double nearest(const mu_mirrors *s, const mu_spot *from, const double o[3], const double d[3],
                       int64_t around, mu_spot *hit) {
-    const int64_t n = s->f.n;
+    const int64_t n = s->f.nx;
     double best = INFINITY;
     for (int64_t i = -around * n; i < (around + 1) * n; i++)
         for (int64_t j = -around * n; j < (around + 1) * n; j++)
@@ -91,7 +91,7 @@ static void rays_equal_brute_force(void **state) {
     enum { N = 9, AROUND = 4 };
     double h[N * N];
     for (uint64_t k = 0; k < N * N; k++) h[k] = 0.8 * mu_noise_normal(21, k);
-    const mu_heightfield f = {h, N};
+    const mu_heightfield f = {h, N, N};
     int hits = 0, escapes = 0, down = 0;
     for (uint64_t k = 0; k < 3000; k++) {
         const double *m = maps[k % MAPS];
@@ -166,7 +166,7 @@ static void grooves_unfold(void **state) {
                 const double c = cos(turn), s = sin(turn), y = k % 2 ? -1.3 : 0.7; /* k odd: a mirror */
                 const double m[4] = {wide * c, -y * s, wide * s, y * c};
                 for (size_t at = 0; at < N * N; at++) h[at] = at / N % 2 ? depths[depth] : 0;
-                const mu_heightfield f = {h, N};
+                const mu_heightfield f = {h, N, N};
                 const mu_mirrors mirrors = mu_mirrors_make(&f, m);
                 const groove g = {wide, depths[depth], atan2(wide, depths[depth]),
                                   hypot(wide, depths[depth])};
@@ -206,7 +206,7 @@ static void grooves_unfold(void **state) {
 static void plains_and_zeniths(void **state) {
     (void)state;
     double h[16] = {0};
-    const mu_heightfield f = {h, 4};
+    const mu_heightfield f = {h, 4, 4};
     const mu_mirrors mirrors = mu_mirrors_make(&f, maps[3]);
     const mu_spot spot = {1, 2, 0, 0.25, 0.5};
     const double views[3][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {1e-20, 0, 1}};

@@ -83,8 +83,8 @@ static void slopes_follow_the_law(void **state) {
         const mu_heightfield f = mu_generator_surface(g);
         const double limit = mu_slope_quantile(&laws[k], 0.9999);
         double steepest = 0, c2 = 0, s2 = 0;
-        for (uint32_t i = 0; i < f.n; i++)
-            for (uint32_t j = 0; j < f.n; j++)
+        for (uint32_t i = 0; i < f.nx; i++)
+            for (uint32_t j = 0; j < f.ny; j++)
                 for (int upper = 0; upper < 2; upper++) {
                     double s[2];
                     mu_facet_slope(&f, i, j, upper, s);
@@ -96,7 +96,7 @@ static void slopes_follow_the_law(void **state) {
             assert_true(mu_slope_deviation(&f, upper, &laws[k], 20) < 0.01);
         assert_true(steepest <= limit);
         assert_true(steepest > 0.9 * limit);                    /* and the tail is there */
-        assert_true(hypot(c2, s2) / (2.0 * f.n * f.n) < 0.002); /* no preferred axis */
+        assert_true(hypot(c2, s2) / (2.0 * f.nx * f.ny) < 0.002); /* no preferred axis */
         mu_generator_free(g);
     }
 }
@@ -146,7 +146,7 @@ typedef struct bounce {
 } bounce;
 
 static bounce bounce_off(const mu_heightfield *f, const double m[4], const double w[3]) {
-    const size_t cells = (size_t)f->n * f->n;
+    const size_t cells = mu_cells(f);
     const mu_directions d = {90, 180, pi / 2};
     uint8_t *seen = malloc(cells), *both[2] = {malloc(cells), malloc(cells)};
     double *share[2] = {calloc(cells, sizeof(double)), calloc(cells, sizeof(double))};
@@ -159,10 +159,10 @@ static bounce bounce_off(const mu_heightfield *f, const double m[4], const doubl
                             .upper = upper};
         mu_cast *cast;
         assert_int_equal(mu_cast_make(&cast, caster, &s), MU_WALK_OK);
-        for (uint32_t i = 0; i < f->n; i++) {
-            mu_cast_row(cast, i, seen + (size_t)i * f->n);
-            mu_reflect_row(caster, f, m, w, upper, i, seen + (size_t)i * f->n,
-                           both[upper] + (size_t)i * f->n);
+        for (uint32_t i = 0; i < f->nx; i++) {
+            mu_cast_row(cast, i, seen + (size_t)i * f->ny);
+            mu_reflect_row(caster, f, m, w, upper, i, seen + (size_t)i * f->ny,
+                           both[upper] + (size_t)i * f->ny);
         }
         for (size_t k = 0; k < cells; k++) share[upper][k] = seen[k];
         mu_cast_free(cast);
@@ -179,11 +179,11 @@ static bounce bounce_off(const mu_heightfield *f, const double m[4], const doubl
     mu_group_facets(f, m, w, bits, &d, groups);
     b.sorted = mu_reflect_groups(groups, bins + 1, w, &(mu_lighting){unity, white, NULL});
     b.sorted_up = mu_reflect_groups(groups, bins + 1, w, &(mu_lighting){unity, upward, NULL});
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++)
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++)
             for (int upper = 0; upper < 2; upper++) {
                 double normal[3], r[3];
-                if (both[upper][(size_t)i * f->n + j])
+                if (both[upper][(size_t)i * f->ny + j])
                     b.direct_up += mu_facet_mirror(f, m, w, i, j, upper, normal, r) * r[2];
             }
     for (int upper = 0; upper < 2; upper++) free(both[upper]), free(share[upper]);
@@ -198,7 +198,7 @@ static void ridges_by_pencil(void **state) {
     (void)state;
     double h[16 * 16] = {0};
     const double m[4] = {1, 0, 0, 1}, up[3] = {0, 0, 1};
-    const mu_heightfield f = {h, 16};
+    const mu_heightfield f = {h, 16, 16};
     for (int slope = 1; slope <= 2; slope++) {
         for (int j = 0; j < 16; j++) h[16 * 8 + j] = slope == 1 ? 1 : 0.5;
         const bounce b = bounce_off(&f, m, up);

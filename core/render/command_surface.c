@@ -28,10 +28,11 @@ static const mu_usage usage = {
     "  statistics  slopes, normals, masking, visible normals, reflections; see musurf surface statistics "
     "--help\n"
     "\n"
-    "A heightfield file is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j "
-    "in it is\n"
-    "y. Each cell splits along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = "
-    "(i+1,j+1),(i,j+1),(i+1,j).\n"};
+    "A heightfield that musurf makes is a one-channel float EXR, nx scanlines of ny pixels, periodic, cell "
+    "size 1:\n"
+    "scanline i is x, pixel j in it is y. Others are read, too; see musurf surface measure --help. Each cell "
+    "splits\n"
+    "along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = (i+1,j+1),(i,j+1),(i+1,j).\n"};
 
 size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, double *out) {
     const char *at = options->value;

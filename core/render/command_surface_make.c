@@ -12,6 +12,7 @@
 #include "core/render/output.h"
 #include "core/render/surface_fft.h"
 #include "core/render/surface_file.h"
+#include "core/render/surface_source.h"
 #include "core/surface/statistics.h"
 
 enum { NDF, ALPHA, GAMMA, EXPONENT, SIZE, SEED, CORRELATION, CLIP, PASSES, OUTPUT, OPTION_COUNT };
@@ -138,12 +139,12 @@ static _Bool fit(const mu_making *making, mu_generator *g, const mu_spectral *ff
 
 static void report(const mu_making *making, const mu_surface_info *info, const mu_heightfield *f) {
     double low = f->h[0], high = f->h[0];
-    for (size_t k = 0; k < (size_t)f->n * f->n; k++) low = fmin(low, f->h[k]), high = fmax(high, f->h[k]);
+    for (size_t k = 0; k < mu_cells(f); k++) low = fmin(low, f->h[k]), high = fmax(high, f->h[k]);
     mu_json json = {0};
     mu_json_begin(&json);
     mu_json_string(&json, "file", making->file);
     mu_json_string(&json, "ndf", mu_slope_names()[making->recipe.law.kind]);
-    mu_json_number(&json, "size", f->n);
+    mu_json_number(&json, "size", f->nx);
     mu_json_number(&json, "passes", info->passes);
     mu_json_numbers(&json, "deviation", info->deviation, 2);
     mu_json_number(&json, "steepest", info->steepest);

@@ -12,32 +12,35 @@
 #include "core/render/json_out.h"
 #include "core/render/output.h"
 #include "core/render/surface_bits.h"
-#include "core/render/surface_file.h"
 #include "core/render/surface_measure.h"
 
-enum { TRANSFORM, VIEW, BINS, TRACER, THREADS, SUBSAMPLES, BITS };
+enum { TRANSFORM, VIEW, BINS, TRACER, THREADS, SUBSAMPLES, BITS, SOURCE };
 
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "M = [a c; b d], row by row (default: 1,0,0,1)"},
     {"view", "X,Y,Z", "a direction in the space of the transformed surface, Z > 0; up to 64 of them"},
     {"bins", "N|A,B,...",
      "G1 by the facets' slope along the view: N bins of as many facets each, or these edges"},
-    {"tracer", "own|embree", "own: exact, double precision (default); embree: float"},
+    {"tracer", "own|embree|povray",
+     "own: exact, double precision (default); embree: float; povray: the program POV-Ray, by lights, in a\n"
+     "temporary folder ($POVRAY names it; povray on the PATH otherwise)"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     {"subsamples", "K", "points per facet for G1_projected and bins: a square, 9 to 225 (default: 9)"},
     {"bits", "FILE.npy",
      "writes what each view sees as a NumPy array of bytes [view][L, U][i][j]: 1 where the facet's one\n"
      "point is seen, 0 where it is not or the facet faces away"},
+    MU_SURFACE_SOURCE_OPTIONS,
     {NULL, NULL, NULL}};
 
 static const mu_usage usage = {
     "surface measure", "FILE --view X,Y,Z [--view X,Y,Z ...] [--transform A,C,B,D] ...",
     "Counts the facets of a heightfield that directions see, on triangles whose vertices M has moved.\n",
     options,
-    "FILE is a one-channel float EXR, n x n, periodic, cell size 1; scanline i is x, pixel j in it is y.\n"
+    MU_SURFACE_SOURCE_HELP
     "out, one line of JSON: {\"views\": [...], \"pairs\": [...]}; each view has\n"
     "  \"view\"           the direction, as a unit vector\n"
-    "  \"facets\"         2 n^2\n"
+    "  \"facets\"         2 nx ny; with --border crop, those of the \"window\" of cells [i0, i1, j0, j1] "
+    "that count\n"
     "  \"front_facing\"   facets whose normal is within 90 degrees of the view\n"
     "  \"visible\"        of these, whose point (i + 1/4, j + 1/2) or (i + 3/4, j + 1/2) is seen\n"
     "  \"G1_facet_mean\"  visible / front_facing\n"
@@ -49,11 +52,13 @@ static const mu_usage usage = {
     "  \"facing_both\", \"both_visible\"   facets that face both; that both see\n"
     "  \"G2\"             both_visible / facing_both\n"
     "\"..._error\" is a standard error from 16 blocks of the surface: how far another surface of its kind "
-    "would lie.\n"};
+    "would lie.\n"
+    "\"tracer\": what stands behind embree or povray, with its version.\n"};
 
 typedef struct mu_asked {
     mu_measuring s;
-    const char *file, *bits;
+    mu_surface_source source;
+    const char *bits;
     double edges[MU_MOST_BINS + 1];
 } mu_asked;
 
@@ -78,6 +83,7 @@ static _Bool read_bins(mu_asked *asked, const mu_options *at) {
 static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
     uint64_t number = 0;
     int choice = 0;
+    if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
     switch (met) {
     case TRANSFORM:
         return mu_options_transform(at, asked->s.m);
@@ -116,9 +122,12 @@ static void put_estimate(mu_json *json, const char *key, mu_estimate e) {
 static void put_view(const mu_measuring *s, const mu_view *view, mu_json *json, mu_json *inner) {
     const double length = sqrt(view->w[0] * view->w[0] + view->w[1] * view->w[1] + view->w[2] * view->w[2]);
     const double w[3] = {view->w[0] / length, view->w[1] / length, view->w[2] / length};
+    const mu_window c = view->window;
+    const double window[4] = {c.i0, c.i1, c.j0, c.j1};
     mu_json_begin(json);
     mu_json_numbers(json, "view", w, 3);
-    mu_json_number(json, "facets", 2.0 * s->f.n * s->f.n);
+    mu_json_number(json, "facets", 2.0 * (c.i1 - c.i0) * (c.j1 - c.j0));
+    if (s->open) mu_json_numbers(json, "window", window, 4);
     mu_json_number(json, "front_facing", (double)view->front_facing);
     mu_json_number(json, "visible", (double)view->visible);
     put_estimate(json, "G1_facet_mean", view->facet_mean);
@@ -160,6 +169,7 @@ static _Bool report(const mu_measuring *s) {
             mu_json_list_add(&all, &one);
         }
     mu_json_list_end(&all);
+    if (s->version[0]) mu_json_string(&all, "tracer", s->version);
     const _Bool good = mu_json_write(&all, stdout);
     mu_json_free(&all);
     mu_json_free(&one);
@@ -176,41 +186,46 @@ static int measure(mu_asked *asked) {
     mu_measuring *const s = &asked->s;
     mu_error error = {.text = ""};
     if (asked->bits && !mu_output_check(asked->bits, &error)) return mu_refuse(&usage, "%s", error.text);
-    double *h = mu_surface_read(asked->file, &s->f.n, &error);
+    mu_surface surface;
+    const _Bool read = mu_surface_read(&asked->source, &surface, &error);
     const _Bool terminal = isatty(STDERR_FILENO);
     int code = MU_EXIT_OK;
-    s->f.h = h;
+    s->f = surface.f, s->open = surface.open;
     if (terminal) s->progress = show;
     const _Bool good =
-        h && mu_measure(s, &error) && (!asked->bits || mu_surface_bits(asked->bits, s, &error));
+        read && mu_measure(s, &error) && (!asked->bits || mu_surface_bits(asked->bits, s, &error));
     if (terminal) fprintf(stderr, "\r\033[K");
     errno = 0;
-    if (!good) {
+    if (!good && !error.text[0]) {
+        code = MU_EXIT_INTERRUPTED;
+    } else if (!good) {
         code = mu_refuse(&usage, "%s", error.text);
     } else if (!report(s)) {
         fprintf(stderr, "musurf surface measure: standard output: %s\n", strerror(errno));
         code = MU_EXIT_FAILED;
     }
     mu_measure_free(s);
-    free(h);
+    mu_surface_free(&surface);
     return code;
 }
 
 int mu_command_surface_measure(int argc, char **argv) {
-    mu_asked asked = {.s = {.m = {1, 0, 0, 1}, .tracer = &mu_tracer_own, .side = 3, .threads = mu_processors()}};
+    mu_asked asked = {
+        .source = mu_surface_source_begin(),
+        .s = {.m = {1, 0, 0, 1}, .tracer = &mu_tracer_own, .side = 3, .threads = mu_processors()}};
     int met;
     mu_options given = mu_options_begin(&usage, argc, argv);
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met == MU_OPTIONS_OPERAND) {
-            if (asked.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.file = given.value;
+            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
+            asked.source.file = given.value;
         } else if (met < 0) {
             return mu_options_exit(met);
         } else if (!read_option(&asked, &given, met)) {
             return MU_EXIT_REFUSED;
         }
     }
-    if (!asked.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
     if (!asked.s.view_count) return mu_refuse(&usage, "at least one --view is needed");
     return measure(&asked);
 }

@@ -3,33 +3,34 @@
 /* command_surface_mesh.c: `musurf surface mesh`, the baked triangles of a heightfield as a file. */
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "core/render/command_surface.h"
 #include "core/render/json_out.h"
 #include "core/render/output_stream.h"
-#include "core/render/surface_file.h"
 #include "core/render/surface_mesh.h"
+#include "core/render/surface_source.h"
 
-enum { TRANSFORM, TILES, FORMAT, OUTPUT, MOST_TILES = 1024 };
+enum { TRANSFORM, TILES, FORMAT, OUTPUT, SOURCE, MOST_TILES = 1024 };
 
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "M = [a c; b d], row by row (default: 1,0,0,1)"},
     {"tiles", "K", "K further periods on each side, (2K+1)^2 in all, 0 to 1024 (default: 0)"},
     {"format", "pov|ply|obj", "format (default: by the ending of the output's name)"},
     {"o", "FILE", "the mesh file; written beside and renamed when it is whole"},
+    MU_SURFACE_SOURCE_OPTIONS,
     {NULL, NULL, NULL}};
 
 static const mu_usage usage = {
     "surface mesh", "FILE [--transform A,C,B,D] [--tiles K] [--format pov|ply|obj] -o FILE",
     "Writes the triangles of a heightfield, vertices moved by M: (M (i, j), height).\n", options,
+    MU_SURFACE_SOURCE_HELP
     "Each cell splits along (i+1,j)-(i,j+1) into L = (i,j),(i+1,j),(i,j+1) and U = "
     "(i+1,j+1),(i,j+1),(i+1,j); L comes\n"
     "first, cells follow scanline by scanline. Corners run counter-clockwise seen from above, under a "
     "mirror, too.\n"
-    "Numbers come back as the same doubles.\n"
+    "Numbers come back as the same doubles. Heights are in cells.\n"
     "  pov   mesh2 of one period, for #include inside object { }; K > 0: a union of it and its translated "
     "copies\n"
     "  ply   binary little-endian, double vertices, all periods\n"
@@ -38,12 +39,14 @@ static const mu_usage usage = {
 
 typedef struct mu_asked {
     mu_surface_mesh mesh;
-    const char *file, *output;
+    mu_surface_source source;
+    const char *output;
     int format; /* -1: by the ending */
 } mu_asked;
 
 static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
     uint64_t number = 0;
+    if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
     switch (met) {
     case TRANSFORM:
         return mu_options_transform(at, asked->mesh.m);
@@ -82,6 +85,8 @@ static _Bool write_mesh(mu_asked *asked, mu_error *error) {
     if (asked->mesh.format != MU_MESH_POV && vertices > INT32_MAX)
         return mu_fail(error, "%s: %llu vertices are more than its format can number (2^31 - 1)",
                        asked->output, (unsigned long long)vertices);
+    if (asked->mesh.open && asked->mesh.tiles)
+        return mu_fail(error, "--tiles: a surface with --border crop does not repeat");
     mu_output_stream stream;
     if (!mu_output_stream_open(&stream, asked->output, error)) return 0;
     const _Bool terminal = isatty(STDERR_FILENO);
@@ -106,27 +111,28 @@ static int report(const mu_asked *asked) {
 }
 
 int mu_command_surface_mesh(int argc, char **argv) {
-    mu_asked asked = {.mesh = {.m = {1, 0, 0, 1}}, .format = -1};
+    mu_asked asked = {.source = mu_surface_source_begin(), .mesh = {.m = {1, 0, 0, 1}}, .format = -1};
     int met;
     mu_options given = mu_options_begin(&usage, argc, argv);
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met == MU_OPTIONS_OPERAND) {
-            if (asked.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.file = given.value;
+            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
+            asked.source.file = given.value;
         } else if (met < 0) {
             return mu_options_exit(met);
         } else if (!read_option(&asked, &given, met)) {
             return MU_EXIT_REFUSED;
         }
     }
-    if (!asked.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
     if (!asked.output) return mu_refuse(&usage, "-o FILE is needed");
     mu_error error = {.text = ""};
     if (!choose_format(&asked)) return MU_EXIT_REFUSED;
     if (!mu_output_check(asked.output, &error)) return mu_refuse(&usage, "%s", error.text);
-    double *h = mu_surface_read(asked.file, &asked.mesh.f.n, &error);
-    asked.mesh.f.h = h;
-    const _Bool good = h && write_mesh(&asked, &error);
-    free(h);
+    mu_surface surface;
+    if (!mu_surface_read(&asked.source, &surface, &error)) return mu_refuse(&usage, "%s", error.text);
+    asked.mesh.f = surface.f, asked.mesh.open = surface.open;
+    const _Bool good = write_mesh(&asked, &error);
+    mu_surface_free(&surface);
     return good ? report(&asked) : mu_refuse(&usage, "%s", error.text);
 }

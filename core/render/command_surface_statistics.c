@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "core/render/command_surface.h"
-#include "core/render/surface_file.h"
+#include "core/render/surface_source.h"
 #include "core/render/surface_statistics.h"
 
 enum {
@@ -25,7 +25,8 @@ enum {
     SLOPE_BOUNDS,
     SUBSAMPLES,
     TRACER,
-    THREADS
+    THREADS,
+    SOURCE
 };
 enum { MOST_FILES = 1024 };
 
@@ -44,10 +45,11 @@ static const mu_option options[] = {
     {"slope-bounds", "X0,X1,Y0,Y1",
      "between these slopes (default: wide enough for 99 % along each axis, and 1.25 times)"},
     {"subsamples", "K", "points per facet: a square, 9 to 225 (default: 9)"},
-    {"tracer", "own|embree",
-     "what views see: own: exact, double precision (default); embree: float.\nReflections always by the "
+    {"tracer", "own|embree|povray",
+     "what views see: own: exact, double precision (default); embree: float; povray: the program POV-Ray.\nReflections always by the "
      "first"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
+    MU_SURFACE_SOURCE_OPTIONS,
     {NULL, NULL, NULL}};
 
 static const mu_usage usage = {
@@ -56,8 +58,8 @@ static const mu_usage usage = {
     "M has moved.\n",
     options,
     /* clang-format off */
-    "Each FILE is a heightfield as of musurf surface make; several are realisations of one kind of\n"
-    "surface. Frame: x, y in the plane of the transformed surface, z up; directions point away from it and\n"
+    MU_SURFACE_SOURCE_HELP
+    "Several FILEs are realisations of one kind of surface. Frame: x, y in the plane of the transformed surface, z up; directions point away from it and\n"
     "are unit vectors in the output. Bins of directions: R rings of equal theta from +z (0 to 90 degrees),\n"
     "S sectors of equal phi from +x toward +y; a list holds bin ring * S + sector. Areas count per macro\n"
     "area, the surface's own in the plane. V is 1 where a point is seen, 0 for facets that turn away.\n"
@@ -97,6 +99,7 @@ static const mu_usage usage = {
 
 typedef struct mu_inquiry {
     mu_gathering g;
+    mu_surface_source source;
     const char *files[MOST_FILES];
     _Bool terminal;
     double began, shown;
@@ -166,6 +169,7 @@ static _Bool read_option(mu_inquiry *q, const mu_options *at, int met) {
     uint32_t number = 0;
     int choice = 0;
     double b[4];
+    if (met >= SOURCE) return mu_surface_source_option(&q->source, at, met - SOURCE);
     switch (met) {
     case TRANSFORM:
         return mu_options_transform(at, g->m);
@@ -233,11 +237,13 @@ static void warn_of_blocks(const mu_gathering *g) {
 static _Bool gather(mu_inquiry *q, mu_error *error) {
     if (!mu_gathering_begin(&q->g, error)) return 0;
     for (uint32_t k = 0; k < q->g.file_count; k++) {
-        mu_heightfield f = {NULL, 0};
-        double *h = mu_surface_read(q->files[k], &f.n, error);
-        f.h = h;
-        const _Bool good = h && mu_gathering_add(&q->g, k, &f, error);
-        free(h);
+        mu_surface surface;
+        q->source.file = q->files[k];
+        if (!mu_surface_read(&q->source, &surface, error)) return 0;
+        const _Bool good =
+            surface.open ? mu_fail(error, "--border crop: all facets count here; measure has a window of them")
+                         : mu_gathering_add(&q->g, k, &surface.f, error);
+        mu_surface_free(&surface);
         if (!good) return 0;
     }
     return 1;
@@ -251,7 +257,9 @@ static int run(mu_inquiry *q) {
     const _Bool good = gather(q, &error);
     if (q->g.progress) fprintf(stderr, "\r\033[K");
     errno = 0;
-    if (!good) {
+    if (!good && !error.text[0]) {
+        code = MU_EXIT_INTERRUPTED;
+    } else if (!good) {
         code = mu_refuse(&usage, "%s", error.text);
     } else {
         warn_of_blocks(&q->g);
@@ -265,7 +273,7 @@ static int run(mu_inquiry *q) {
 }
 
 int mu_command_surface_statistics(int argc, char **argv) {
-    mu_inquiry q = {.g = {.m = {1, 0, 0, 1},
+    mu_inquiry q = {.source = mu_surface_source_begin(), .g = {.m = {1, 0, 0, 1},
                           .tracer = &mu_tracer_own,
                           .side = 3,
                           .threads = mu_processors(),

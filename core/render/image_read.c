@@ -6,6 +6,8 @@
 
 #include <dlfcn.h>
 #include <limits.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +16,8 @@
 #define MODULE "musurf_oiio.so"
 
 typedef float *(*mu_reader)(const char *file, int *width, int *height, char *message, size_t size);
+typedef double *(*mu_raw_reader)(const char *file, const char *channel, int *width, int *height,
+                                 char *message, size_t size);
 
 /* The first file of that name is taken; if it does not load, `why` says so and no other is tried in its
  * place. */
@@ -46,7 +50,8 @@ static void *open_module(char *why, size_t size) {
     return open_in(program, strlen(program), why, size);
 }
 
-float *mu_image_read(const char *file, int *width, int *height, mu_error *error) {
+/* A function of the module, which is left open: OpenImageIO keeps threads of its own, which must not lose their code. */
+static void *find(const char *file, const char *name, mu_error *error) {
     char why[512] = "";
     void *module = open_module(why, sizeof why);
     if (!module) {
@@ -56,15 +61,41 @@ float *mu_image_read(const char *file, int *width, int *height, mu_error *error)
                 why);
         return NULL;
     }
-    /* Left open: OpenImageIO keeps threads of its own, which must not lose their code. */
+    void *function = dlsym(module, name);
+    if (!function)
+        mu_fail(error, "%s: the module " MODULE " does not offer %s; is it of another version?", file, name);
+    return function;
+}
+
+/* While threads may be started that are not ours: signals are for our own. */
+static void hold_signals(sigset_t *before) {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, before);
+}
+
+float *mu_image_read(const char *file, int *width, int *height, mu_error *error) {
     mu_reader reader;
-    *(void **)&reader = dlsym(module, "mu_oiio_read");
-    if (!reader) {
-        mu_fail(error, "%s: the module " MODULE " does not offer mu_oiio_read; is it of another version?",
-                file);
-        return NULL;
-    }
-    float *pixels = reader(file, width, height, why, sizeof why);
-    if (!pixels) mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
+    char why[512] = "";
+    sigset_t before;
+    hold_signals(&before);
+    float *pixels = NULL;
+    *(void **)&reader = find(file, "mu_oiio_read", error);
+    if (reader && !(pixels = reader(file, width, height, why, sizeof why)))
+        mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return pixels;
+}
+
+double *mu_image_read_raw(const char *file, const char *channel, int *width, int *height, mu_error *error) {
+    mu_raw_reader reader;
+    char why[512] = "";
+    sigset_t before;
+    hold_signals(&before);
+    double *values = NULL;
+    *(void **)&reader = find(file, "mu_oiio_read_raw", error);
+    if (reader && !(values = reader(file, channel, width, height, why, sizeof why)))
+        mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return values;
 }

@@ -16,7 +16,12 @@
  * NULL on failure: missing, truncated, of no known format, or of more than 2^27 pixels. */
 float *mu_image_read(const char *file, int *width, int *height, mu_error *error);
 
-/* The numbers of a one-channel OpenEXR image, by its C core (image_plane.c), row by row from the top; free() it. */
-float *mu_image_read_plane(const char *file, int *width, int *height, mu_error *error);
+/* The numbers of one channel of an OpenEXR image of scanlines, by its C core (image_plane.c), row by row from the top;
+ * free() it. `channel` NULL: its only one. */
+float *mu_image_read_plane(const char *file, const char *channel, int *width, int *height, mu_error *error);
+
+/* One channel of any picture as it is stored, through the module: whole-number codes stay what they are, nothing is decoded
+ * or divided by alpha. `channel` NULL: its only one. */
+double *mu_image_read_raw(const char *file, const char *channel, int *width, int *height, mu_error *error);
 
 #endif

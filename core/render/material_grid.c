@@ -92,7 +92,7 @@ static float *read_plane(const mu_place *parent, const char *key, int *width, in
     if (!mu_place_string(&place, &name, error)) return NULL;
     char *file = mu_document_beside(place.document, name);
     mu_error why = {.text = ""};
-    float *pixels = file ? mu_image_read_plane(file, width, height, &why) : NULL;
+    float *pixels = file ? mu_image_read_plane(file, NULL, width, height, &why) : NULL;
     free(file);
     if (!pixels) {
         mu_place_fail(&place, error, "%s", why.text[0] ? why.text : "not enough memory");

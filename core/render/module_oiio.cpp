@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
+#include <memory>
 #include <string>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -52,23 +54,36 @@ float linear_from_srgb(float c) {
     return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
 
-float *read(const char *file, int *width, int *height, char *message, size_t size) {
+/* A flat picture of a size that can be believed; null and a message otherwise. */
+std::unique_ptr<OIIO::ImageInput> open_picture(const char *file, const OIIO::ImageSpec *hints, char *message, size_t size) {
     struct stat status;
-    if (stat(file, &status) != 0) return refuse(message, size, "no such file");
-    if (!S_ISREG(status.st_mode)) return refuse(message, size, "is not a regular file");
-    auto input = OIIO::ImageInput::open(file);
-    if (!input) {
-        const std::string why = OIIO::geterror();
-        return refuse(message, size, why.empty() ? "is not an image of a known format" : why);
+    std::string why;
+    std::unique_ptr<OIIO::ImageInput> input;
+    if (stat(file, &status) != 0)
+        why = "no such file";
+    else if (!S_ISREG(status.st_mode))
+        why = "is not a regular file";
+    else if (!(input = OIIO::ImageInput::open(file, hints)))
+        why = OIIO::geterror(), why = why.empty() ? "is not an image of a known format" : why;
+    if (input) {
+        const OIIO::ImageSpec &spec = input->spec();
+        const long long count = (long long)spec.width * spec.height;
+        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+            why = "is not a flat two-dimensional image";
+        else if (count > most_pixels)
+            why = "has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels; at most " +
+                  std::to_string(most_pixels) + " are read";
     }
+    if (why.empty()) return input;
+    refuse(message, size, why);
+    return nullptr;
+}
+
+float *read(const char *file, int *width, int *height, char *message, size_t size) {
+    auto input = open_picture(file, nullptr, message, size);
+    if (!input) return nullptr;
     const OIIO::ImageSpec spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
-        return refuse(message, size, "is not a flat two-dimensional image");
     const long long count = (long long)spec.width * spec.height;
-    if (count > most_pixels)
-        return refuse(message, size,
-                      "has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                          " pixels; at most " + std::to_string(most_pixels) + " are read");
     const int channels = spec.nchannels >= 3 ? 3 : 1;
     float *pixels = static_cast<float *>(std::malloc((size_t)count * 3 * sizeof(float)));
     if (!pixels) return refuse(message, size, "not enough memory for its pixels");
@@ -89,6 +104,59 @@ float *read(const char *file, int *width, int *height, char *message, size_t siz
     return pixels;
 }
 
+/* The codes of one channel, of the file's own type. */
+template <typename T>
+bool read_as(OIIO::ImageInput &input, OIIO::TypeDesc type, int channel, double *out, long long count) {
+    std::vector<T> codes((size_t)count);
+    if (!input.read_image(0, 0, channel, channel + 1, type, codes.data())) return false;
+    for (long long i = 0; i < count; i++) out[i] = (double)codes[(size_t)i];
+    return true;
+}
+
+bool read_codes(OIIO::ImageInput &input, int channel, double *out, long long count) {
+    switch (input.spec().format.basetype) {
+    case OIIO::TypeDesc::UINT8: return read_as<uint8_t>(input, OIIO::TypeDesc::UINT8, channel, out, count);
+    case OIIO::TypeDesc::INT8: return read_as<int8_t>(input, OIIO::TypeDesc::INT8, channel, out, count);
+    case OIIO::TypeDesc::UINT16: return read_as<uint16_t>(input, OIIO::TypeDesc::UINT16, channel, out, count);
+    case OIIO::TypeDesc::INT16: return read_as<int16_t>(input, OIIO::TypeDesc::INT16, channel, out, count);
+    case OIIO::TypeDesc::UINT32: return read_as<uint32_t>(input, OIIO::TypeDesc::UINT32, channel, out, count);
+    case OIIO::TypeDesc::INT32: return read_as<int32_t>(input, OIIO::TypeDesc::INT32, channel, out, count);
+    case OIIO::TypeDesc::DOUBLE: return read_as<double>(input, OIIO::TypeDesc::DOUBLE, channel, out, count);
+    default: return read_as<float>(input, OIIO::TypeDesc::FLOAT, channel, out, count);
+    }
+}
+
+double *read_raw(const char *file, const char *channel, int *width, int *height, char *message, size_t size) {
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1); /* colours are not multiplied by alpha */
+    hints.attribute("oiio:RawColor", 1);
+    auto input = open_picture(file, &hints, message, size);
+    if (!input) return nullptr;
+    const OIIO::ImageSpec spec = input->spec();
+    const long long count = (long long)spec.width * spec.height;
+    std::string names;
+    int chosen = !channel && spec.nchannels == 1 ? 0 : -1;
+    for (int c = 0; c < spec.nchannels; c++) {
+        names += (c ? ", " : "") + std::string(spec.channel_name(c));
+        if (channel && spec.channel_name(c) == channel) chosen = c;
+    }
+    if (chosen < 0) {
+        refuse(message, size, channel ? "has no channel \"" + std::string(channel) + "\", but " + names
+                                      : "has more than one channel; one is needed of " + names);
+        return nullptr;
+    }
+    double *values = static_cast<double *>(std::malloc((size_t)count * sizeof(double)));
+    if (values && read_codes(*input, chosen, values, count)) {
+        *width = spec.width;
+        *height = spec.height;
+        return values;
+    }
+    const std::string why = values ? input->geterror() : "not enough memory for its pixels";
+    std::free(values);
+    refuse(message, size, "is truncated or damaged" + (why.empty() ? "" : ": " + why));
+    return nullptr;
+}
+
 } // namespace
 
 /* Linear RGB in malloc'ed memory, or NULL and one line in `message`. Not for two threads at once: it turns stderr off. */
@@ -102,4 +170,18 @@ mu_oiio_read(const char *file, int *width, int *height, char *message, size_t si
     } catch (...) {
         return refuse(message, size, "cannot be read as an image");
     }
+}
+
+/* One channel as it is stored, in malloc'ed memory, or NULL and one line in `message`. Not for two threads at once either. */
+extern "C" __attribute__((visibility("default"))) double *
+mu_oiio_read_raw(const char *file, const char *channel, int *width, int *height, char *message, size_t size) {
+    try {
+        const Silence silence;
+        return read_raw(file, channel, width, height, message, size);
+    } catch (const std::exception &trouble) {
+        refuse(message, size, trouble.what());
+    } catch (...) {
+        refuse(message, size, "cannot be read as an image");
+    }
+    return nullptr;
 }

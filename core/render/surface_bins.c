@@ -25,10 +25,10 @@ static _Bool faces(const mu_measuring *s, const mu_view *view, uint32_t i, uint3
 
 /* Edges between which as many front-facing facets lie. */
 static _Bool equal_edges(const mu_measuring *s, const mu_view *view, double *edges) {
-    const uint32_t n = s->f.n;
+    const mu_window c = view->window;
     double top = -INFINITY, bottom = INFINITY;
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = c.i0; i < c.i1; i++)
+        for (uint32_t j = c.j0; j < c.j1; j++)
             for (int upper = 0; upper < 2; upper++)
                 if (faces(s, view, i, j, upper)) {
                     const double slope = slope_along(s, view, i, j, upper);
@@ -37,8 +37,8 @@ static _Bool equal_edges(const mu_measuring *s, const mu_view *view, double *edg
     mu_ranked *ranked = malloc((view->front_facing + 1) * sizeof *ranked);
     mu_ranked *spare = malloc((view->front_facing + 1) * sizeof *spare);
     size_t count = 0;
-    for (uint32_t i = 0; ranked && spare && i < n; i++)
-        for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = c.i0; ranked && spare && i < c.i1; i++)
+        for (uint32_t j = c.j0; j < c.j1; j++)
             for (int upper = 0; upper < 2; upper++)
                 if (faces(s, view, i, j, upper))
                     ranked[count++].key = (float)(slope_along(s, view, i, j, upper) - bottom);
@@ -69,7 +69,8 @@ static uint32_t find(const double *edges, uint32_t bins, double slope) {
 }
 
 _Bool mu_measure_bins(const mu_measuring *s, mu_view *view) {
-    const uint32_t n = s->f.n;
+    const mu_window c = view->window;
+    const uint32_t ny = s->f.ny;
     const double points = (double)s->side * s->side;
     double edges[MU_MOST_BINS + 1] = {0};
     mu_blocks *blocks = calloc(s->bin_count, sizeof *blocks);
@@ -79,15 +80,15 @@ _Bool mu_measure_bins(const mu_measuring *s, mu_view *view) {
         for (uint32_t k = 0; k <= s->bin_count; k++) edges[k] = s->edges[k];
     else if (good && view->front_facing)
         good = equal_edges(s, view, edges);
-    for (uint32_t i = 0; good && i < n; i++)
-        for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = c.i0; good && i < c.i1; i++)
+        for (uint32_t j = c.j0; j < c.j1; j++)
             for (int upper = 0; upper < 2; upper++) {
                 if (!faces(s, view, i, j, upper)) continue;
                 const uint32_t bin = find(edges, s->bin_count, slope_along(s, view, i, j, upper));
                 if (bin == s->bin_count) continue;
-                const size_t at = (size_t)i * n + j;
-                blocks[bin].bottom[mu_block(n, i, j)]++;
-                blocks[bin].top[mu_block(n, i, j)] += view->count[upper][at] / points;
+                const size_t at = (size_t)i * ny + j;
+                blocks[bin].bottom[mu_block(&c, i, j)]++;
+                blocks[bin].top[mu_block(&c, i, j)] += view->count[upper][at] / points;
                 view->bins[bin].facets++;
                 view->bins[bin].visible += view->seen[upper][at];
             }

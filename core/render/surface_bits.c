@@ -14,13 +14,13 @@
 enum { PREFIX = 10, ALIGN = 64 };
 
 _Bool mu_surface_bits(const char *file, const mu_measuring *s, mu_error *error) {
-    const size_t cells = (size_t)s->f.n * s->f.n;
+    const size_t cells = mu_cells(&s->f);
     char head[4 * ALIGN];
     memset(head, ' ', sizeof head);
     memcpy(head, "\x93NUMPY\x01\x00", 8);
     const int text = snprintf(head + PREFIX, sizeof head - PREFIX,
                               "{'descr': '|u1', 'fortran_order': False, 'shape': (%u, 2, %u, %u), }",
-                              s->view_count, s->f.n, s->f.n);
+                              s->view_count, s->f.nx, s->f.ny);
     const size_t used = PREFIX + (size_t)text, size = (used + 1 + ALIGN - 1) / ALIGN * ALIGN;
     memset(head + used, ' ', size - used);
     head[size - 1] = '\n';

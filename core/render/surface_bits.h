@@ -6,7 +6,7 @@
 
 #include "core/render/surface_measure.h"
 
-/* uint8 [views][2][n][n], L then U, 1 = seen; NumPy's format 1.0, C order. */
+/* uint8 [views][2][nx][ny], L then U, 1 = seen; NumPy's format 1.0, C order. */
 _Bool mu_surface_bits(const char *file, const mu_measuring *measured, mu_error *error);
 
 #endif

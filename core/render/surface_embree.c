@@ -43,21 +43,21 @@ static void skip_own(const struct RTCFilterFunctionNArguments *args) {
 }
 
 static _Bool bake(surface *s, RTCGeometry mesh) {
-    const uint32_t n = s->f.n;
-    const size_t side = (size_t)n + 1;
+    const uint32_t nx = s->f.nx, ny = s->f.ny;
+    const size_t side = (size_t)ny + 1;
     float *v = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                       side * side);
+                                       ((size_t)nx + 1) * side);
     uint32_t *t = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(uint32_t), 2 * (size_t)n * n);
+                                          3 * sizeof(uint32_t), 2 * mu_cells(&s->f));
     if (!v || !t) return 0;
-    for (uint32_t i = 0; i <= n; i++)
-        for (uint32_t j = 0; j <= n; j++) {
+    for (uint32_t i = 0; i <= nx; i++)
+        for (uint32_t j = 0; j <= ny; j++) {
             *v++ = (float)(s->m[0] * i + s->m[1] * j);
             *v++ = (float)(s->m[2] * i + s->m[3] * j);
             *v++ = (float)mu_height(&s->f, i, j);
         }
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < n; j++) {
+    for (uint32_t i = 0; i < nx; i++)
+        for (uint32_t j = 0; j < ny; j++) {
             const uint32_t p00 = (uint32_t)(i * side + j), p10 = (uint32_t)(p00 + side);
             const uint32_t corners[6] = {p00, p10, p00 + 1, p10 + 1, p00 + 1, p10};
             memcpy(t, corners, sizeof corners);
@@ -74,13 +74,13 @@ static void close_embree(void *data) {
     free(s);
 }
 
-static void *open_embree(const mu_heightfield *f, const double m[4], uint32_t threads, mu_error *error) {
+static void *open_embree(const mu_heightfield *f, const double m[4], const mu_plan *plan, mu_error *error) {
     char settings[32];
-    snprintf(settings, sizeof settings, "threads=%u", threads);
+    snprintf(settings, sizeof settings, "threads=%u", plan->threads);
     surface *s = calloc(1, sizeof *s);
     if (s) {
         double low = f->h[0], high = f->h[0];
-        for (size_t k = 0; k < (size_t)f->n * f->n; k++) low = fmin(low, f->h[k]), high = fmax(high, f->h[k]);
+        for (size_t k = 0; k < mu_cells(f); k++) low = fmin(low, f->h[k]), high = fmax(high, f->h[k]);
         *s = (surface){.f = *f, .range = high - low, .device = rtcNewDevice(settings)};
         memcpy(s->m, m, sizeof s->m);
     }
@@ -97,7 +97,7 @@ static void *open_embree(const mu_heightfield *f, const double m[4], uint32_t th
         rtcReleaseGeometry(mesh);
     }
     if (s && s->device && s->period && rtcGetDeviceError(s->device) == RTC_ERROR_NONE) return s;
-    mu_fail(error, "Embree has not enough memory for a surface of %u x %u", f->n, f->n);
+    mu_fail(error, "Embree has not enough memory for a surface of %u x %u", f->nx, f->ny);
     close_embree(s);
     return NULL;
 }
@@ -119,8 +119,8 @@ static _Bool reach(const surface *s, const mu_sight *sight, int32_t tiles[4], mu
             j0 = j < j0 ? j : j0, j1 = j + 1 > j1 ? j + 1 : j1;
             if (++count > MU_WALK_MOST) return mu_tracer_walk_fail(MU_WALK_TOO_LONG, sight, error);
         }
-    tiles[0] = tile(i0 - 1, s->f.n), tiles[1] = tile(i1 + (int32_t)s->f.n, s->f.n);
-    tiles[2] = tile(j0 - 1, s->f.n), tiles[3] = tile(j1 + (int32_t)s->f.n, s->f.n);
+    tiles[0] = tile(i0 - 1, s->f.nx), tiles[1] = tile(i1 + (int32_t)s->f.nx, s->f.nx);
+    tiles[2] = tile(j0 - 1, s->f.ny), tiles[3] = tile(j1 + (int32_t)s->f.ny, s->f.ny);
     const int64_t all = ((int64_t)tiles[1] - tiles[0] + 1) * ((int64_t)tiles[3] - tiles[2] + 1);
     return all <= MOST_TILES ||
            mu_fail(error, "the view %g,%g,%g reaches over %lld periods; Embree is given %d at most",
@@ -128,19 +128,9 @@ static _Bool reach(const surface *s, const mu_sight *sight, int32_t tiles[4], mu
 }
 
 static void attach(const surface *s, RTCScene tiles, int32_t a, int32_t b, unsigned id) {
-    const double n = s->f.n;
-    const float shift[12] = {1,
-                             0,
-                             0,
-                             0,
-                             1,
-                             0,
-                             0,
-                             0,
-                             1,
-                             (float)(n * (s->m[0] * a + s->m[1] * b)),
-                             (float)(n * (s->m[2] * a + s->m[3] * b)),
-                             0};
+    const double x = (double)a * s->f.nx, y = (double)b * s->f.ny;
+    const float shift[12] = {
+        1, 0, 0, 0, 1, 0, 0, 0, 1, (float)(s->m[0] * x + s->m[1] * y), (float)(s->m[2] * x + s->m[3] * y), 0};
     RTCGeometry instance = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, s->period);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, shift);
@@ -185,7 +175,7 @@ static void row(const void *data, uint32_t i, uint8_t *visible) {
     const double length = sqrt(at->w[0] * at->w[0] + at->w[1] * at->w[1] + at->w[2] * at->w[2]);
     own_context context;
     rtcInitIntersectContext(&context.embree);
-    for (uint32_t j = 0; j < f->n; j++) {
+    for (uint32_t j = 0; j < f->ny; j++) {
         double slope[2];
         mu_facet_slope(f, i, j, at->upper, slope);
         visible[j] = 0;
@@ -199,10 +189,16 @@ static void row(const void *data, uint32_t i, uint8_t *visible) {
                              .dir_z = (float)(at->w[2] / length),
                              .tfar = INFINITY,
                              .mask = ~0u};
-        context.primitive = 2 * (i * f->n + j) + (unsigned)at->upper;
+        context.primitive = 2 * (i * f->ny + j) + (unsigned)at->upper;
         rtcOccluded1(v->tiles, &context.embree, &ray);
         if (!(ray.tfar < 0)) visible[j] = 1;
     }
 }
 
-const mu_tracer mu_tracer_embree = {"embree", open_embree, close_embree, look, look_away, row};
+static _Bool version(char *out, size_t size, mu_error *error) {
+    (void)error;
+    snprintf(out, size, "Embree " RTC_VERSION_STRING);
+    return 1;
+}
+
+const mu_tracer mu_tracer_embree = {"embree", version, open_embree, close_embree, look, look_away, row};

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/render/surface_rows.h"
 
@@ -22,17 +23,16 @@ mu_estimate mu_blocks_ratio(const mu_blocks *b) {
 typedef struct mu_looking {
     const mu_tracer *tracer;
     const void *look;
-    uint32_t n;
-    uint8_t *seen;
+    uint32_t ny;
     uint16_t *count; /* NULL: not to be counted */
-    uint8_t *row;    /* n * n: rows are written apart, so that `seen` may be left alone */
+    uint8_t *row;    /* of all cells: rows are written apart, so that `seen` may be left alone */
 } mu_looking;
 
 static void look_at_row(void *context, uint32_t i) {
     const mu_looking *l = context;
-    uint8_t *row = l->row + (size_t)i * l->n;
+    uint8_t *row = l->row + (size_t)i * l->ny;
     l->tracer->row(l->look, i, row);
-    for (uint32_t j = 0; l->count && j < l->n; j++) l->count[(size_t)i * l->n + j] += row[j];
+    for (uint32_t j = 0; l->count && j < l->ny; j++) l->count[(size_t)i * l->ny + j] += row[j];
 }
 
 /* One point of every cell: into `seen` or, if that is NULL, only counted. */
@@ -43,11 +43,11 @@ static _Bool look(const mu_measuring *s, void *surface, const double w[3], int u
                             .u = point[0],
                             .v = point[1],
                             .upper = upper};
-    mu_looking l = {.tracer = s->tracer, .n = s->f.n, .count = count, .row = seen ? seen : spare};
+    mu_looking l = {.tracer = s->tracer, .ny = s->f.ny, .count = count, .row = seen ? seen : spare};
     void *const at = s->tracer->look(surface, &sight, error);
     if (!at) return 0;
     l.look = at;
-    mu_rows(s->f.n, s->threads, look_at_row, &l);
+    mu_rows(s->f.nx, s->threads, look_at_row, &l);
     s->tracer->look_away(at);
     return 1;
 }
@@ -76,19 +76,29 @@ static _Bool look_everywhere(const mu_measuring *s, void *surface, mu_view *view
     return 1;
 }
 
+/* Cells whose rays leave the surface are not known to be seen. */
+static void forget_outside(const mu_measuring *s, mu_view *view) {
+    const mu_window c = view->window;
+    for (uint32_t i = 0; s->open && i < s->f.nx; i++)
+        for (uint32_t j = 0; j < s->f.ny; j++)
+            if (i < c.i0 || i >= c.i1 || j < c.j0 || j >= c.j1)
+                view->seen[0][(size_t)i * s->f.ny + j] = view->seen[1][(size_t)i * s->f.ny + j] = 0;
+}
+
 static void add_up(const mu_measuring *s, mu_view *view) {
-    const uint32_t n = s->f.n;
+    const mu_window c = view->window;
+    const uint32_t ny = s->f.ny;
     const double points = (double)s->side * s->side;
     mu_blocks facets = {0}, projected = {0};
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = c.i0; i < c.i1; i++)
+        for (uint32_t j = c.j0; j < c.j1; j++)
             for (int upper = 0; upper < 2; upper++) {
-                const size_t at = (size_t)i * n + j;
+                const size_t at = (size_t)i * ny + j;
                 double slope[2];
                 mu_facet_slope(&s->f, i, j, upper, slope);
                 const double facing = mu_facet_facing(s->m, slope, view->w);
                 if (!(facing > 0)) continue;
-                const uint32_t block = mu_block(n, i, j);
+                const uint32_t block = mu_block(&c, i, j);
                 facets.bottom[block]++;
                 facets.top[block] += view->seen[upper][at];
                 projected.bottom[block] += facing;
@@ -110,17 +120,28 @@ static _Bool allocate(mu_view *view, size_t cells) {
 }
 
 _Bool mu_measure(mu_measuring *s, mu_error *error) {
-    const size_t cells = (size_t)s->f.n * s->f.n;
+    const size_t cells = mu_cells(&s->f);
     uint32_t done = 0;
     uint8_t *spare = malloc(cells);
     _Bool good = spare || mu_fail(error, "not enough memory");
-    void *const surface = good ? s->tracer->open(&s->f, s->m, s->threads, error) : NULL;
+    double views[MU_MOST_VIEWS][3];
+    for (uint32_t k = 0; k < s->view_count; k++) memcpy(views[k], s->views[k].w, sizeof views[k]);
+    const mu_plan plan = {(const double(*)[3])views, s->view_count, s->side, s->threads};
+    if (good && s->tracer->version) good = s->tracer->version(s->version, sizeof s->version, error);
+    void *const surface = good ? s->tracer->open(&s->f, s->m, &plan, error) : NULL;
     good = surface != NULL;
     for (uint32_t k = 0; k < s->view_count && good; k++) {
         mu_view *view = &s->views[k];
+        view->window = mu_surface_window(&s->f, s->open, s->m, view->w);
+        if (view->window.i0 == view->window.i1 || view->window.j0 == view->window.j1)
+            good = mu_fail(error,
+                           "the view %g,%g,%g is so low that all its rays may leave the surface of %u x %u",
+                           view->w[0], view->w[1], view->w[2], s->f.nx, s->f.ny);
+        if (!good) break;
         good = allocate(view, cells) || mu_fail(error, "not enough memory for %u views", s->view_count);
         good = good && look_everywhere(s, surface, view, spare, &done, error);
         if (!good) break;
+        forget_outside(s, view);
         add_up(s, view);
         if (s->bin_count) good = mu_measure_bins(s, view) || mu_fail(error, "not enough memory for bins");
     }
@@ -139,21 +160,31 @@ void mu_measure_free(mu_measuring *s) {
     }
 }
 
+static uint32_t larger(uint32_t a, uint32_t b) {
+    return a > b ? a : b;
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
+}
+
 void mu_measure_pair(const mu_measuring *s, mu_pair *pair) {
     const mu_view *a = &s->views[pair->a], *b = &s->views[pair->b];
-    const uint32_t n = s->f.n;
+    const mu_window c = {larger(a->window.i0, b->window.i0), smaller(a->window.i1, b->window.i1),
+                         larger(a->window.j0, b->window.j0), smaller(a->window.j1, b->window.j1)};
+    const uint32_t ny = s->f.ny;
     mu_blocks blocks = {0};
     pair->facing_both = pair->both_visible = 0;
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < n; j++)
+    for (uint32_t i = c.i0; i < c.i1; i++)
+        for (uint32_t j = c.j0; j < c.j1; j++)
             for (int upper = 0; upper < 2; upper++) {
-                const size_t at = (size_t)i * n + j;
+                const size_t at = (size_t)i * ny + j;
                 double slope[2];
                 mu_facet_slope(&s->f, i, j, upper, slope);
                 if (!(mu_facet_facing(s->m, slope, a->w) > 0 && mu_facet_facing(s->m, slope, b->w) > 0))
                     continue;
                 const uint8_t both = a->seen[upper][at] & b->seen[upper][at];
-                const uint32_t block = mu_block(n, i, j);
+                const uint32_t block = mu_block(&c, i, j);
                 blocks.bottom[block]++;
                 blocks.top[block] += both;
                 pair->facing_both++;

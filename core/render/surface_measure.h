@@ -11,9 +11,10 @@
 #ifndef MU_SURFACE_MEASURE_H
 #define MU_SURFACE_MEASURE_H
 
+#include "core/render/surface_source.h"
 #include "core/render/surface_tracer.h"
 
-enum { MU_BLOCKS = 16, MU_MOST_VIEWS = 64, MU_MOST_BINS = 256 };
+enum { MU_BLOCKS = 16, MU_MOST_VIEWS = MU_PLAN_VIEWS, MU_MOST_BINS = 256 };
 
 typedef struct mu_estimate {
     double value, error; /* NaN where there is nothing to measure */
@@ -27,7 +28,8 @@ typedef struct mu_slope_bin {
 } mu_slope_bin;
 
 typedef struct mu_view {
-    double w[3]; /* as given but for a power of two, so that exact ties stay exact */
+    double w[3];      /* as given but for a power of two, so that exact ties stay exact */
+    mu_window window; /* the cells that count */
     uint64_t front_facing, visible;
     mu_estimate facet_mean, projected;
     mu_slope_bin *bins;
@@ -43,12 +45,15 @@ typedef struct mu_pair {
 
 typedef struct mu_measuring {
     mu_heightfield f;
+    _Bool
+        open; /* rays may not leave (surface_source.h); cells whose rays do are no part of the window, and not seen */
     double m[4];
     const mu_tracer *tracer;
     uint32_t side, threads, view_count;
     uint32_t bin_count;           /* 0: no bins */
     const double *edges;          /* bin_count + 1; NULL: as many facets in each */
     mu_view views[MU_MOST_VIEWS]; /* w given; the rest is filled */
+    char version[128];            /* filled: what stands behind a foreign tracer; else empty */
     void (*progress)(void *context, uint32_t done, uint32_t all);
     void *context;
 } mu_measuring;
@@ -59,12 +64,13 @@ void mu_measure_free(mu_measuring *measuring);
 /* Needs the views. */
 void mu_measure_pair(const mu_measuring *measuring, mu_pair *pair);
 
-/* Sums per block, and what becomes of two of them. */
+/* Sums per block of a window, and what becomes of two of them. */
 typedef struct mu_blocks {
     double top[MU_BLOCKS], bottom[MU_BLOCKS];
 } mu_blocks;
-static inline uint32_t mu_block(uint32_t n, uint32_t i, uint32_t j) {
-    return (uint32_t)((uint64_t)i * 4 / n * 4 + (uint64_t)j * 4 / n);
+static inline uint32_t mu_block(const mu_window *w, uint32_t i, uint32_t j) {
+    return (uint32_t)((uint64_t)(i - w->i0) * 4 / (w->i1 - w->i0) * 4 +
+                      (uint64_t)(j - w->j0) * 4 / (w->j1 - w->j0));
 }
 mu_estimate mu_blocks_ratio(const mu_blocks *blocks);
 

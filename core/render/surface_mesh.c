@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The periods written as vertices: rows first ... first + side - 1 of side vertices each. */
+/* Vertices that are written: from `first`, `side` of them, along i and along j. */
 typedef struct mu_extent {
-    int64_t first, side;
+    int64_t first[2], side[2];
 } mu_extent;
 
 const char *const *mu_mesh_formats(void) {
@@ -17,21 +17,19 @@ const char *const *mu_mesh_formats(void) {
     return names;
 }
 
-static uint64_t square(uint64_t x) {
-    return x * x;
-}
-
-static mu_extent extent(const mu_surface_mesh *mesh) {
-    const int64_t n = mesh->f.n, tiles = mesh->format == MU_MESH_POV ? 0 : mesh->tiles;
-    return (mu_extent){-tiles * n, (2 * tiles + 1) * n + 1};
+static mu_extent extent(const mu_surface_mesh *mesh, int64_t tiles) {
+    const int64_t nx = mesh->f.nx, ny = mesh->f.ny, end = !mesh->open;
+    return (mu_extent){{-tiles * nx, -tiles * ny}, {(2 * tiles + 1) * nx + end, (2 * tiles + 1) * ny + end}};
 }
 
 uint64_t mu_surface_mesh_vertices(const mu_surface_mesh *mesh) {
-    return square((2 * (uint64_t)mesh->tiles + 1) * mesh->f.n + 1);
+    const mu_extent e = extent(mesh, mesh->tiles);
+    return (uint64_t)e.side[0] * (uint64_t)e.side[1];
 }
 
 uint64_t mu_surface_mesh_triangles(const mu_surface_mesh *mesh) {
-    return 2 * square((2 * (uint64_t)mesh->tiles + 1) * mesh->f.n);
+    const mu_extent e = extent(mesh, mesh->tiles);
+    return 2 * (uint64_t)(e.side[0] - 1) * (uint64_t)(e.side[1] - 1);
 }
 
 /* The fewest of 15 and 17 digits that come back as the same double; whole numbers, the most frequent, as such. */
@@ -80,30 +78,30 @@ static void put_triangle(const mu_surface_mesh *mesh, const uint64_t corners[3],
     }
 }
 
-static void head(const mu_surface_mesh *mesh, uint64_t vertices, FILE *out) {
+static void head(const mu_surface_mesh *mesh, const mu_extent *e, FILE *out) {
+    const unsigned long long vertices = (unsigned long long)(e->side[0] * e->side[1]);
     const double *m = mesh->m;
     if (mesh->format != MU_MESH_PLY)
         fprintf(out,
                 "%s musurf " MUSURF_VERSION
-                ": a surface of %u x %u cells, vertices under M = [%.17g %.17g; %.17g %.17g], z is up\n",
-                mesh->format == MU_MESH_POV ? "//" : "#", mesh->f.n, mesh->f.n, m[0], m[1], m[2], m[3]);
+                ": a surface of %u x %u heights, vertices under M = [%.17g %.17g; %.17g %.17g], z is up\n",
+                mesh->format == MU_MESH_POV ? "//" : "#", mesh->f.nx, mesh->f.ny, m[0], m[1], m[2], m[3]);
     if (mesh->format == MU_MESH_POV && mesh->tiles) fprintf(out, "#declare musurf_period =\n");
-    if (mesh->format == MU_MESH_POV)
-        fprintf(out, "mesh2 {\nvertex_vectors { %llu,\n", (unsigned long long)vertices);
+    if (mesh->format == MU_MESH_POV) fprintf(out, "mesh2 {\nvertex_vectors { %llu,\n", vertices);
     if (mesh->format == MU_MESH_PLY)
         fprintf(out,
                 "ply\nformat binary_little_endian 1.0\ncomment musurf " MUSURF_VERSION
                 "\nelement vertex %llu\nproperty double x\nproperty double y\nproperty double z\n"
                 "element face %llu\nproperty list uchar int vertex_indices\nend_header\n",
-                (unsigned long long)vertices, (unsigned long long)mu_surface_mesh_triangles(mesh));
+                vertices, (unsigned long long)mu_surface_mesh_triangles(mesh));
 }
 
 static void put_copies(const mu_surface_mesh *mesh, FILE *out) {
-    const int64_t tiles = mesh->tiles, n = mesh->f.n;
+    const int64_t tiles = mesh->tiles;
     fprintf(out, "union {\n");
     for (int64_t a = -tiles; a <= tiles; a++)
         for (int64_t b = -tiles; b <= tiles; b++) {
-            const double x = (double)(a * n), y = (double)(b * n);
+            const double x = (double)(a * mesh->f.nx), y = (double)(b * mesh->f.ny);
             const double shift[3] = {mesh->m[0] * x + mesh->m[1] * y, mesh->m[2] * x + mesh->m[3] * y, 0};
             put_text(out, "object { musurf_period translate <", shift, ',', "> }\n");
         }
@@ -111,31 +109,32 @@ static void put_copies(const mu_surface_mesh *mesh, FILE *out) {
 }
 
 void mu_surface_mesh_write(const mu_surface_mesh *mesh, FILE *out) {
-    const mu_extent e = extent(mesh);
-    const uint64_t side = (uint64_t)e.side, all = 2 * side - 1;
+    const mu_extent e = extent(mesh, mesh->format == MU_MESH_POV ? 0 : mesh->tiles);
+    const uint64_t rows = (uint64_t)e.side[0], columns = (uint64_t)e.side[1], all = 2 * rows - 1;
     const _Bool mirror = mesh->m[0] * mesh->m[3] - mesh->m[1] * mesh->m[2] < 0;
-    const int64_t n = mesh->f.n, before = mesh->tiles * n;
-    head(mesh, side * side, out);
-    for (uint64_t r = 0; r < side; r++) {
+    const int64_t nx = mesh->f.nx, ny = mesh->f.ny;
+    head(mesh, &e, out);
+    for (uint64_t r = 0; r < rows; r++) {
         if (mesh->progress) mesh->progress(mesh->context, r, all);
-        for (uint64_t s = 0; s < side; s++) {
-            const int64_t i = e.first + (int64_t)r, j = e.first + (int64_t)s;
+        for (uint64_t s = 0; s < columns; s++) {
+            const int64_t i = e.first[0] + (int64_t)r, j = e.first[1] + (int64_t)s;
             const double x = (double)i, y = (double)j;
             const double p[3] = {
                 mesh->m[0] * x + mesh->m[1] * y, mesh->m[2] * x + mesh->m[3] * y,
-                mu_height(&mesh->f, (uint32_t)((i + before) % n), (uint32_t)((j + before) % n))};
-            put_vertex(mesh, p, r + 1 == side && s + 1 == side, out);
+                mu_height(&mesh->f, (uint32_t)((i - e.first[0]) % nx), (uint32_t)((j - e.first[1]) % ny))};
+            put_vertex(mesh, p, r + 1 == rows && s + 1 == columns, out);
         }
     }
-    if (mesh->format == MU_MESH_POV) fprintf(out, "}\nface_indices { %llu,\n", 2ULL * mesh->f.n * mesh->f.n);
-    for (uint64_t r = 0; r + 1 < side; r++) {
-        if (mesh->progress) mesh->progress(mesh->context, side + r, all);
-        for (uint64_t s = 0; s + 1 < side; s++) {
-            const uint64_t p00 = r * side + s, p10 = p00 + side, p01 = p00 + 1, p11 = p10 + 1;
+    if (mesh->format == MU_MESH_POV)
+        fprintf(out, "}\nface_indices { %llu,\n", 2ULL * (rows - 1) * (columns - 1));
+    for (uint64_t r = 0; r + 1 < rows; r++) {
+        if (mesh->progress) mesh->progress(mesh->context, rows + r, all);
+        for (uint64_t s = 0; s + 1 < columns; s++) {
+            const uint64_t p00 = r * columns + s, p10 = p00 + columns, p01 = p00 + 1, p11 = p10 + 1;
             const uint64_t lower[3] = {p00, mirror ? p01 : p10, mirror ? p10 : p01};
             const uint64_t upper[3] = {p11, mirror ? p10 : p01, mirror ? p01 : p10};
             put_triangle(mesh, lower, 0, out);
-            put_triangle(mesh, upper, r + 2 == side && s + 2 == side, out);
+            put_triangle(mesh, upper, r + 2 == rows && s + 2 == columns, out);
         }
     }
     if (mesh->format == MU_MESH_POV) fprintf(out, "}\n}\n");

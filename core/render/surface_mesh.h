@@ -7,7 +7,7 @@
  * too, so that normals point up. Numbers come back as the same doubles.
  *     obj  text, v and f lines
  *     ply  binary, little-endian: double x y z, int indices
- *     pov  a mesh2 of one period to be #included; of several periods, a union of that mesh2 moved by M (a n, b n)
+ *     pov  a mesh2 of one period to be #included; of several periods, a union of that mesh2 moved by M (a nx, b ny)
  */
 #ifndef MU_SURFACE_MESH_H
 #define MU_SURFACE_MESH_H
@@ -22,6 +22,7 @@ const char *const *mu_mesh_formats(void);
 
 typedef struct mu_surface_mesh {
     mu_heightfield f;
+    _Bool open; /* the last row and column of vertices end it: one cell fewer either way, tiles 0 */
     double m[4];
     uint32_t tiles; /* further periods on each side: (2 tiles + 1)^2 in all */
     mu_mesh_format format;

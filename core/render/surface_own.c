@@ -4,12 +4,13 @@
 #include "core/render/surface_tracer.h"
 
 const char *const *mu_tracer_names(void) {
-    static const char *const names[] = {"own", "embree", NULL};
+    static const char *const names[] = {"own", "embree", "povray", NULL};
     return names;
 }
 
 const mu_tracer *mu_tracer_get(int index) {
-    return index ? &mu_tracer_embree : &mu_tracer_own;
+    static const mu_tracer *const tracers[] = {&mu_tracer_own, &mu_tracer_embree, &mu_tracer_povray};
+    return tracers[index];
 }
 
 _Bool mu_tracer_walk_fail(mu_walk_result result, const mu_sight *sight, mu_error *error) {
@@ -19,10 +20,10 @@ _Bool mu_tracer_walk_fail(mu_walk_result result, const mu_sight *sight, mu_error
                    sight->w[0], sight->w[1], sight->w[2], MU_WALK_MOST);
 }
 
-static void *open_own(const mu_heightfield *f, const double m[4], uint32_t threads, mu_error *error) {
-    (void)m, (void)threads;
+static void *open_own(const mu_heightfield *f, const double m[4], const mu_plan *plan, mu_error *error) {
+    (void)m, (void)plan;
     mu_caster *caster = mu_caster_make(f);
-    if (!caster) mu_fail(error, "not enough memory for a surface of %u x %u", f->n, f->n);
+    if (!caster) mu_fail(error, "not enough memory for a surface of %u x %u", f->nx, f->ny);
     return caster;
 }
 
@@ -45,4 +46,4 @@ static void row(const void *cast, uint32_t i, uint8_t *visible) {
     mu_cast_row(cast, i, visible);
 }
 
-const mu_tracer mu_tracer_own = {"own", open_own, close_own, look, look_away, row};
+const mu_tracer mu_tracer_own = {"own", NULL, open_own, close_own, look, look_away, row};

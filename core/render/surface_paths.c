@@ -32,18 +32,20 @@ typedef struct mu_following {
 static void follow_row(void *context, uint32_t row) {
     const mu_following *t = context;
     const mu_gathering *g = t->g;
-    const uint32_t n = t->mirrors->f.n, i = t->first + row;
-    for (uint32_t j = 0; j < n; j++) {
-        mu_followed *p = &t->paths[(size_t)row * n + j];
+    const uint32_t ny = t->mirrors->f.ny, i = t->first + row;
+    for (uint32_t j = 0; j < ny; j++) {
+        mu_followed *p = &t->paths[(size_t)row * ny + j];
         mu_mirror_path path;
         double r[3];
         p->weight = 0;
-        if (!t->seen->visible[(size_t)i * n + j]) continue;
+        if (!t->seen->visible[(size_t)i * ny + j]) continue;
         const mu_spot spot = {i, j, t->upper, t->point[0], t->point[1]};
         const double weight =
             mu_facet_mirror(&t->mirrors->f, g->m, t->seen->unit, i, j, t->upper, p->normal, r);
         mu_mirror_follow(t->mirrors, &spot, t->seen->unit, g->bounces, &path);
-        p->weight = weight * 2 * n * n; /* of one facet: its own macro area, not the surface's */
+        p->weight =
+            weight * 2 *
+            (double)mu_cells(&t->mirrors->f); /* of one facet: its own macro area, not the surface's */
         p->end = (uint8_t)path.end, p->count = (uint8_t)path.count;
         for (int k = 0; k < 3; k++) p->out[k] = path.out[k];
         for (int c = 0; c < mu_gathering_channels(g); c++) {
@@ -91,17 +93,17 @@ static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) 
 
 _Bool mu_gathering_paths(mu_gathering *g, uint32_t file, const mu_mirrors *mirrors, mu_seen *seen, int upper,
                          const double point[2], mu_error *error) {
-    const uint32_t n = mirrors->f.n;
+    const uint32_t nx = mirrors->f.nx, ny = mirrors->f.ny;
     mu_following t = {g, mirrors, seen, upper, {point[0], point[1]}, 0, NULL};
-    t.paths = malloc((size_t)ROWS * n * sizeof *t.paths);
+    t.paths = malloc((size_t)ROWS * ny * sizeof *t.paths);
     if (!t.paths) return mu_fail(error, "not enough memory to follow paths");
-    for (t.first = 0; t.first < n; t.first += ROWS) {
-        const uint32_t rows = n - t.first < ROWS ? n - t.first : ROWS;
+    for (t.first = 0; t.first < nx; t.first += ROWS) {
+        const uint32_t rows = nx - t.first < ROWS ? nx - t.first : ROWS;
         mu_rows(rows, g->threads, follow_row, &t);
         for (uint32_t row = 0; row < rows; row++)
-            for (uint32_t j = 0; j < n; j++) {
-                const mu_followed *p = &t.paths[(size_t)row * n + j];
-                if (p->weight > 0) add(g, seen, mu_gathering_unit(g, file, n, t.first + row, j), p);
+            for (uint32_t j = 0; j < ny; j++) {
+                const mu_followed *p = &t.paths[(size_t)row * ny + j];
+                if (p->weight > 0) add(g, seen, mu_gathering_unit(g, file, &mirrors->f, t.first + row, j), p);
             }
     }
     free(t.paths);

@@ -18,12 +18,12 @@ static void baked_slope(const mu_gathering *g, const mu_heightfield *f, uint32_t
 
 /* Along each axis 1.25 times the magnitude that 99 % of the facets stay below. */
 static _Bool choose_bounds(mu_gathering *g, const mu_heightfield *f) {
-    const size_t count = 2 * (size_t)f->n * f->n;
+    const size_t count = 2 * mu_cells(f);
     mu_ranked *ranked = malloc(count * sizeof *ranked), *spare = malloc(count * sizeof *spare);
     for (int axis = 0; axis < 2 && ranked && spare; axis++) {
         size_t k = 0;
-        for (uint32_t i = 0; i < f->n; i++)
-            for (uint32_t j = 0; j < f->n; j++)
+        for (uint32_t i = 0; i < f->nx; i++)
+            for (uint32_t j = 0; j < f->ny; j++)
                 for (int upper = 0; upper < 2; upper++) {
                     double normal[3], slope[2];
                     baked_slope(g, f, i, j, upper, normal, slope);
@@ -43,15 +43,15 @@ static _Bool choose_bounds(mu_gathering *g, const mu_heightfield *f) {
 /* The first lag along an axis at which the autocorrelation of the heights falls below 1/e, between lags on a line. NaN if
  * it never does within half the period. */
 static double correlation_length(const mu_heightfield *f, int axis) {
-    const uint32_t n = f->n;
+    const uint32_t nx = f->nx, ny = f->ny, period = axis ? ny : nx;
     double mean = 0, before = 1, variance = 0;
-    for (size_t k = 0; k < (size_t)n * n; k++) mean += f->h[k] / ((double)n * n);
-    for (uint32_t lag = 0; lag <= n / 2; lag++) {
+    for (size_t k = 0; k < mu_cells(f); k++) mean += f->h[k] / (double)mu_cells(f);
+    for (uint32_t lag = 0; lag <= period / 2; lag++) {
         double sum = 0;
-        for (uint32_t i = 0; i < n; i++)
-            for (uint32_t j = 0; j < n; j++) {
-                const uint32_t a = axis ? i : (i + lag) % n, b = axis ? (j + lag) % n : j;
-                sum += (f->h[(size_t)i * n + j] - mean) * (f->h[(size_t)a * n + b] - mean);
+        for (uint32_t i = 0; i < nx; i++)
+            for (uint32_t j = 0; j < ny; j++) {
+                const uint32_t a = axis ? i : (i + lag) % nx, b = axis ? (j + lag) % ny : j;
+                sum += (f->h[(size_t)i * ny + j] - mean) * (f->h[(size_t)a * ny + b] - mean);
             }
         if (!lag) variance = sum;
         if (!(variance > 0)) break;
@@ -77,18 +77,17 @@ static void add_slope(mu_gathering *g, size_t unit, const double s[2]) {
 
 _Bool mu_gathering_normals(mu_gathering *g, uint32_t file, const mu_heightfield *f, uint32_t *bins,
                            mu_error *error) {
-    const uint32_t n = f->n;
     const double *b = g->slope_bounds;
     if (!file) {
         for (int axis = 0; axis < 2; axis++) g->correlation[axis] = correlation_length(f, axis);
-        g->block = n / 4.0;
+        g->block = fmin(f->nx, f->ny) / 4.0;
         if (!(b[0] < b[1] && b[2] < b[3]) && !choose_bounds(g, f))
             return mu_fail(error, "not enough memory to sort slopes");
     }
     for (int upper = 0; upper < 2; upper++)
-        for (uint32_t i = 0; i < n; i++)
-            for (uint32_t j = 0; j < n; j++) {
-                const size_t unit = mu_gathering_unit(g, file, n, i, j);
+        for (uint32_t i = 0; i < f->nx; i++)
+            for (uint32_t j = 0; j < f->ny; j++) {
+                const size_t unit = mu_gathering_unit(g, file, f, i, j);
                 double normal[3], slope[2];
                 baked_slope(g, f, i, j, upper, normal, slope);
                 const double area =

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/render/surface_rows.h"
 
@@ -77,36 +78,36 @@ void mu_gathering_free(mu_gathering *g) {
 typedef struct mu_glance {
     const mu_tracer *tracer;
     const void *look;
-    uint32_t n;
+    uint32_t ny;
     uint8_t *visible;
 } mu_glance;
 
 static void look_at_row(void *context, uint32_t i) {
     const mu_glance *l = context;
-    l->tracer->row(l->look, i, l->visible + (size_t)i * l->n);
+    l->tracer->row(l->look, i, l->visible + (size_t)i * l->ny);
 }
 
-static _Bool look(const mu_gathering *g, void *surface, mu_seen *s, uint32_t n, int upper,
+static _Bool look(const mu_gathering *g, void *surface, mu_seen *s, const mu_heightfield *f, int upper,
                   const double point[2], mu_error *error) {
     const mu_sight sight = {.m = {g->m[0], g->m[1], g->m[2], g->m[3]},
                             .w = {s->w[0], s->w[1], s->w[2]},
                             .u = point[0],
                             .v = point[1],
                             .upper = upper};
-    mu_glance l = {g->tracer, g->tracer->look(surface, &sight, error), n, s->visible};
+    mu_glance l = {g->tracer, g->tracer->look(surface, &sight, error), f->ny, s->visible};
     if (!l.look) return 0;
-    mu_rows(n, g->threads, look_at_row, &l);
+    mu_rows(f->nx, g->threads, look_at_row, &l);
     g->tracer->look_away((void *)(uintptr_t)l.look);
     return 1;
 }
 
 /* One point of one family, which all views have looked at. */
 static void add_up(mu_gathering *g, uint32_t file, const mu_heightfield *f, int upper, const uint32_t *bins) {
-    const uint32_t n = f->n;
     const double points = (double)g->side * g->side;
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < n; j++) {
-            const size_t at = (size_t)i * n + j, bin = bins[at], unit = mu_gathering_unit(g, file, n, i, j);
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++) {
+            const size_t at = (size_t)i * f->ny + j, bin = bins[at],
+                         unit = mu_gathering_unit(g, file, f, i, j);
             double slope[2], normal[3], facing[MU_STATISTICS_VIEWS];
             mu_facet_slope(f, i, j, upper, slope);
             mu_facet_normal(g->m, slope, normal);
@@ -148,16 +149,16 @@ static _Bool look_everywhere(mu_gathering *g, uint32_t file, const mu_heightfiel
             for (uint32_t view = 0; view < g->view_count; view++, done++) {
                 mu_seen *s = &g->views[view];
                 if (g->progress) g->progress(g->context, done / all);
-                if (!look(g, surface, s, f->n, upper, point, error)) return 0;
+                if (!look(g, surface, s, f, upper, point, error)) return 0;
                 if (g->bounces && !mu_gathering_paths(g, file, &mirrors, s, upper, point, error)) return 0;
             }
-            add_up(g, file, f, upper, bins + (upper ? (size_t)f->n * f->n : 0));
+            add_up(g, file, f, upper, bins + (upper ? mu_cells(f) : 0));
         }
     return 1;
 }
 
 _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, mu_error *error) {
-    const size_t cells = (size_t)f->n * f->n;
+    const size_t cells = mu_cells(f);
     uint32_t *bins = malloc(2 * cells * sizeof *bins);
     _Bool good = bins != NULL;
     for (uint32_t k = 0; k < g->view_count && good; k++) {
@@ -165,10 +166,16 @@ _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, 
         if (more) g->views[k].visible = more;
         good = more != NULL;
     }
-    if (!good) mu_fail(error, "not enough memory for a surface of %u x %u", f->n, f->n);
+    if (!good) mu_fail(error, "not enough memory for a surface of %u x %u", f->nx, f->ny);
     good = good && mu_gathering_normals(g, file, f, bins, error);
     if (good && g->view_count) {
-        void *const surface = g->tracer->open(f, g->m, g->threads, error);
+        double views[MU_STATISTICS_VIEWS][3];
+        for (uint32_t k = 0; k < g->view_count; k++) memcpy(views[k], g->views[k].w, sizeof views[k]);
+        const mu_plan plan = {(const double(*)[3])views, g->view_count, g->side, g->threads};
+        char version[128];
+        void *const surface = g->tracer->version && !g->tracer->version(version, sizeof version, error)
+                                  ? NULL
+                                  : g->tracer->open(f, g->m, &plan, error);
         good = surface && look_everywhere(g, file, f, surface, bins, error);
         if (surface) g->tracer->close(surface);
     }

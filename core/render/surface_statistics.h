@@ -57,7 +57,7 @@ typedef struct mu_seen {
     mu_ratios directions[3]; /* per colour: per order and bin, shares */
     mu_ratios lamps[3];      /* per colour, two cells a light: f of one reflection, of all */
     mu_group *groups;        /* of `finer`, if there are lights; what escapes after one reflection */
-    uint8_t *visible;        /* n * n, of the point at hand */
+    uint8_t *visible;        /* nx * ny, of the point at hand */
 } mu_seen;
 
 typedef struct mu_seen_pair {
@@ -99,15 +99,15 @@ _Bool mu_gathering_begin(mu_gathering *g, mu_error *error);
 _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, mu_error *error);
 void mu_gathering_free(mu_gathering *g);
 
-static inline size_t mu_gathering_unit(const mu_gathering *g, uint32_t file, uint32_t n, uint32_t i,
+static inline size_t mu_gathering_unit(const mu_gathering *g, uint32_t file, const mu_heightfield *f, uint32_t i,
                                        uint32_t j) {
-    return g->file_count > 1 ? file : (size_t)((uint64_t)i * 4 / n * 4 + (uint64_t)j * 4 / n);
+    return g->file_count > 1 ? file : (size_t)((uint64_t)i * 4 / f->nx * 4 + (uint64_t)j * 4 / f->ny);
 }
 static inline int mu_gathering_channels(const mu_gathering *g) {
     return g->reflectance.channels;
 }
 
-/* Slopes and normals of a surface (surface_slopes.c); bins[upper n n + i n + j] is the bin of each facet's normal. */
+/* Slopes and normals of a surface (surface_slopes.c); bins[upper nx ny + i ny + j] is the bin of each facet's normal. */
 _Bool mu_gathering_normals(mu_gathering *g, uint32_t file, const mu_heightfield *f, uint32_t *bins,
                            mu_error *error);
 /* Paths from one point of every facet that a view sees (surface_paths.c). */

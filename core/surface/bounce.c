@@ -9,7 +9,7 @@
 
 mu_mirrors mu_mirrors_make(const mu_heightfield *f, const double m[4]) {
     mu_mirrors mirrors = {*f, {m[0], m[1], m[2], m[3]}, f->h[0]};
-    for (size_t k = 0; k < (size_t)f->n * f->n; k++) mirrors.high = fmax(mirrors.high, f->h[k]);
+    for (size_t k = 0; k < mu_cells(f); k++) mirrors.high = fmax(mirrors.high, f->h[k]);
     return mirrors;
 }
 
@@ -20,11 +20,11 @@ static uint32_t wrapped(int64_t i, uint32_t n) {
 
 /* How far a ray that began at height z is above the surface over an edge. */
 static double gap(const mu_mirrors *mirrors, const mu_spot *spot, double z, const mu_crossing *e) {
-    const uint32_t n = mirrors->f.n;
-    const double a = mirrors->f.h[(size_t)wrapped((int64_t)spot->i + e->left[0], n) * n +
-                                  wrapped((int64_t)spot->j + e->left[1], n)];
-    const double b = mirrors->f.h[(size_t)wrapped((int64_t)spot->i + e->right[0], n) * n +
-                                  wrapped((int64_t)spot->j + e->right[1], n)];
+    const uint32_t nx = mirrors->f.nx, ny = mirrors->f.ny;
+    const double a = mirrors->f.h[(size_t)wrapped((int64_t)spot->i + e->left[0], nx) * ny +
+                                  wrapped((int64_t)spot->j + e->left[1], ny)];
+    const double b = mirrors->f.h[(size_t)wrapped((int64_t)spot->i + e->right[0], nx) * ny +
+                                  wrapped((int64_t)spot->j + e->right[1], ny)];
     return z + e->rise - ((1 - e->weight) * a + e->weight * b);
 }
 
@@ -62,8 +62,8 @@ static void land(const mu_mirrors *mirrors, mu_spot *spot, const mu_stepper *s, 
         for (int c = 1; c < 3; c++) least[k] = corner[c][k] < least[k] ? corner[c][k] : least[k];
     }
     for (int c = 0; c < 3; c++) sum += corner[c][0] - least[0];
-    *spot = (mu_spot){wrapped((int64_t)spot->i + least[0], mirrors->f.n),
-                      wrapped((int64_t)spot->j + least[1], mirrors->f.n), sum == 2, p[0] - least[0],
+    *spot = (mu_spot){wrapped((int64_t)spot->i + least[0], mirrors->f.nx),
+                      wrapped((int64_t)spot->j + least[1], mirrors->f.ny), sum == 2, p[0] - least[0],
                       p[1] - least[1]};
     settle(spot);
 }

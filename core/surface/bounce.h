@@ -23,7 +23,7 @@ typedef struct mu_mirrors {
 } mu_mirrors;
 mu_mirrors mu_mirrors_make(const mu_heightfield *f, const double m[4]);
 
-/* The point (i + u, j + v) of one triangle, inside it, 0 <= i, j < n. */
+/* The point (i + u, j + v) of one triangle, inside it, 0 <= i < nx, 0 <= j < ny. */
 typedef struct mu_spot {
     uint32_t i, j;
     int upper;

@@ -16,15 +16,15 @@
 enum { LANES = 16, STRETCH = 16, RUN = 8, LEVELS = 3 };
 
 struct mu_caster {
-    uint32_t n;
+    uint32_t nx, ny;
     size_t stride;  /* of a row of `padded`, whose end repeats its beginning */
-    double *padded; /* n rows */
+    double *padded; /* nx rows */
     double *plain;
     mu_pyramid pyramid;
     double low, high;
 };
 
-/* Edge ends as offsets modulo n. */
+/* Edge ends as offsets modulo nx, ny. */
 typedef struct mu_pass {
     uint32_t i0, j0, i1, j1;
     double weight, rise;
@@ -48,24 +48,24 @@ struct mu_cast {
 mu_caster *mu_caster_make(const mu_heightfield *f) {
     mu_caster *c = calloc(1, sizeof *c);
     if (!c) return NULL;
-    c->n = f->n;
-    c->stride = (size_t)f->n + LANES;
-    c->padded = malloc(c->stride * f->n * sizeof *c->padded);
-    c->plain = malloc((size_t)f->n * f->n * sizeof *c->plain);
+    c->nx = f->nx, c->ny = f->ny;
+    c->stride = (size_t)f->ny + LANES;
+    c->padded = malloc(c->stride * f->nx * sizeof *c->padded);
+    c->plain = malloc(mu_cells(f) * sizeof *c->plain);
     if (!c->padded || !c->plain) {
         mu_caster_free(c);
         return NULL;
     }
-    memcpy(c->plain, f->h, (size_t)f->n * f->n * sizeof *c->plain);
+    memcpy(c->plain, f->h, mu_cells(f) * sizeof *c->plain);
     c->low = c->high = f->h[0];
-    for (uint32_t i = 0; i < f->n; i++)
+    for (uint32_t i = 0; i < f->nx; i++)
         for (size_t j = 0; j < c->stride; j++) {
-            const double h = f->h[(size_t)i * f->n + j % f->n];
+            const double h = f->h[(size_t)i * f->ny + j % f->ny];
             c->padded[i * c->stride + j] = h;
             c->low = fmin(c->low, h);
             c->high = fmax(c->high, h);
         }
-    const mu_heightfield own = {c->plain, c->n};
+    const mu_heightfield own = {c->plain, c->nx, c->ny};
     if (!mu_pyramid_make(&c->pyramid, &own)) {
         mu_caster_free(c);
         return NULL;
@@ -145,10 +145,10 @@ mu_walk_result mu_cast_make(mu_cast **out, const mu_caster *caster, const mu_sig
     }
     for (size_t k = 0; k < walk.count; k++) {
         const mu_crossing *c = &walk.crossings[k];
-        cast->passes[k] = (mu_pass){wrapped(c->left[0], caster->n),
-                                    wrapped(c->left[1], caster->n),
-                                    wrapped(c->right[0], caster->n),
-                                    wrapped(c->right[1], caster->n),
+        cast->passes[k] = (mu_pass){wrapped(c->left[0], caster->nx),
+                                    wrapped(c->left[1], caster->ny),
+                                    wrapped(c->right[0], caster->nx),
+                                    wrapped(c->right[1], caster->ny),
                                     c->weight,
                                     c->rise};
     }
@@ -171,7 +171,7 @@ typedef struct mu_lanes {
 } mu_lanes;
 
 static const double *lane_heights(const mu_caster *c, uint32_t i, uint32_t j) {
-    const uint32_t row = i < c->n ? i : i - c->n, column = j < c->n ? j : j - c->n;
+    const uint32_t row = i < c->nx ? i : i - c->nx, column = j < c->ny ? j : j - c->ny;
     return c->padded + row * c->stride + column;
 }
 
@@ -221,25 +221,25 @@ static void follow_all(const mu_cast *cast, mu_lanes *lanes) {
 void mu_cast_row(const mu_cast *cast, uint32_t i, uint8_t *visible) {
     const mu_caster *c = cast->caster;
     const mu_sight *s = &cast->sight;
-    const mu_heightfield f = {c->plain, c->n};
-    for (uint32_t j = 0; j < c->n; j += LANES) {
+    const mu_heightfield f = {c->plain, c->nx, c->ny};
+    for (uint32_t j = 0; j < c->ny; j += LANES) {
         mu_lanes lanes = {.i = i, .j = j, .lowest = INFINITY};
         for (uint32_t t = 0; t < LANES; t++) {
             double slope[2];
             lanes.z[t] = INFINITY;
-            if (j + t >= c->n) continue;
+            if (j + t >= c->ny) continue;
             mu_facet_slope(&f, i, j + t, s->upper, slope);
             if (mu_facet_facing(s->m, slope, s->w) > 0)
                 lanes.z[t] = mu_facet_height(&f, i, j + t, s->upper, s->u, s->v);
             lanes.lowest = fmin(lanes.lowest, lanes.z[t]);
         }
         if (lanes.lowest < INFINITY) follow_all(cast, &lanes);
-        for (uint32_t t = 0; t < LANES && j + t < c->n; t++) visible[j + t] = lanes.z[t] < INFINITY;
+        for (uint32_t t = 0; t < LANES && j + t < c->ny; t++) visible[j + t] = lanes.z[t] < INFINITY;
     }
 }
 
 _Bool mu_caster_sees(const mu_caster *c, const mu_sight *sight, uint32_t i, uint32_t j) {
-    const mu_heightfield f = {c->plain, c->n};
+    const mu_heightfield f = {c->plain, c->nx, c->ny};
     const double z = mu_facet_height(&f, i, j, sight->upper, sight->u, sight->v);
     mu_stepper s;
     if (!mu_stepper_begin(&s, sight->m, sight->w, sight->u, sight->v, sight->upper)) return 1;
@@ -247,10 +247,10 @@ _Bool mu_caster_sees(const mu_caster *c, const mu_sight *sight, uint32_t i, uint
     for (mu_stepper_next(&s); z + s.edge.rise <= c->high; mu_stepper_next(&s)) {
         if (++steps > MU_WALK_MOST) return 0; /* all but horizontal, and not above all yet */
         const mu_crossing *e = &s.edge;
-        const double a = c->plain[(size_t)wrapped(e->left[0] + (int32_t)i, c->n) * c->n +
-                                  wrapped(e->left[1] + (int32_t)j, c->n)];
-        const double b = c->plain[(size_t)wrapped(e->right[0] + (int32_t)i, c->n) * c->n +
-                                  wrapped(e->right[1] + (int32_t)j, c->n)];
+        const double a = c->plain[(size_t)wrapped(e->left[0] + (int32_t)i, c->nx) * c->ny +
+                                  wrapped(e->left[1] + (int32_t)j, c->ny)];
+        const double b = c->plain[(size_t)wrapped(e->right[0] + (int32_t)i, c->nx) * c->ny +
+                                  wrapped(e->right[1] + (int32_t)j, c->ny)];
         if ((1 - e->weight) * a + e->weight * b - e->rise > z) return 0;
     }
     return 1;

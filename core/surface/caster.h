@@ -16,7 +16,7 @@
 
 typedef struct mu_caster mu_caster;
 
-/* Copies the heights (n >= 2), which must be finite. NULL: out of memory. Read only afterwards, so that threads may share it. */
+/* Copies the heights (nx, ny >= 2), which must be finite. NULL: out of memory. Read only afterwards, so that threads may share it. */
 mu_caster *mu_caster_make(const mu_heightfield *f);
 void mu_caster_free(mu_caster *caster);
 /* Highest less lowest height. */

@@ -63,7 +63,7 @@ void mu_generator_free(mu_generator *g) {
 }
 
 mu_heightfield mu_generator_surface(const mu_generator *g) {
-    return (mu_heightfield){g->h, g->recipe.n};
+    return (mu_heightfield){g->h, g->recipe.n, g->recipe.n};
 }
 
 double mu_generator_steepest(const mu_generator *g) {
@@ -92,8 +92,8 @@ static void add(mu_generator *g, double factor) {
 static void find_steepest(mu_generator *g) {
     const mu_heightfield f = mu_generator_surface(g);
     double most = 0;
-    for (uint32_t i = 0; i < f.n; i++)
-        for (uint32_t j = 0; j < f.n; j++)
+    for (uint32_t i = 0; i < f.nx; i++)
+        for (uint32_t j = 0; j < f.nx; j++)
             for (int upper = 0; upper < 2; upper++) {
                 double s[2];
                 mu_facet_slope(&f, i, j, upper, s);
@@ -105,14 +105,14 @@ static void find_steepest(mu_generator *g) {
 _Bool mu_generator_start(mu_generator *g, const mu_spectral *fft) {
     const mu_heightfield f = mu_generator_surface(g);
     for (size_t k = 0; k < g->count; k++) g->gx[k] = (float)mu_noise_normal(g->recipe.seed, k);
-    if (!fft->apply(fft->context, g->gx, f.n, gaussian, g)) return 0;
+    if (!fft->apply(fft->context, g->gx, f.nx, gaussian, g)) return 0;
     memset(g->h, 0, g->count * sizeof *g->h);
     add(g, 1);
 
     /* As steep, in the mean of squares, as the law without its last hundredth. */
     double have = 0, want = 0;
-    for (uint32_t i = 0; i < f.n; i++)
-        for (uint32_t j = 0; j < f.n; j++) {
+    for (uint32_t i = 0; i < f.nx; i++)
+        for (uint32_t j = 0; j < f.nx; j++) {
             double s[2];
             mu_facet_slope(&f, i, j, MU_LOWER, s);
             have += s[0] * s[0] + s[1] * s[1];
@@ -135,8 +135,8 @@ _Bool mu_generator_start(mu_generator *g, const mu_spectral *fft) {
 static void isotropy(const mu_generator *g, double w[3]) {
     const mu_heightfield f = mu_generator_surface(g);
     double xx = 0, xy = 0, all = 0;
-    for (uint32_t i = 0; i < f.n; i++)
-        for (uint32_t j = 0; j < f.n; j++)
+    for (uint32_t i = 0; i < f.nx; i++)
+        for (uint32_t j = 0; j < f.nx; j++)
             for (int upper = 0; upper < 2; upper++) {
                 double s[2];
                 mu_facet_slope(&f, i, j, upper, s);
@@ -152,24 +152,24 @@ static void isotropy(const mu_generator *g, double w[3]) {
 /* What the facets of one family wish, less what they have, half of it to each of the differences they are made of. */
 static void wish(mu_generator *g, int upper, const double w[3]) {
     const mu_heightfield f = mu_generator_surface(g);
-    for (uint32_t i = 0; i < f.n; i++)
-        for (uint32_t j = 0; j < f.n; j++) {
-            const size_t k = (size_t)i * f.n + j;
+    for (uint32_t i = 0; i < f.nx; i++)
+        for (uint32_t j = 0; j < f.nx; j++) {
+            const size_t k = (size_t)i * f.nx + j;
             double s[2];
             mu_facet_slope(&f, i, j, upper, s);
             g->ranked[k] = (mu_ranked){(float)sqrt(s[0] * s[0] + s[1] * s[1]), (uint32_t)k};
         }
     mu_rank_sort(g->ranked, g->spare, g->count);
     for (size_t k = 0; k < g->count; k++) {
-        const uint32_t index = g->ranked[k].index, i = index / f.n, j = index % f.n;
+        const uint32_t index = g->ranked[k].index, i = index / f.nx, j = index % f.nx;
         double s[2];
         mu_facet_slope(&f, i, j, upper, s);
         const double x = w[0] * s[0] + w[1] * s[1], y = w[1] * s[0] + w[2] * s[1], r = sqrt(x * x + y * y);
         const double steep = fmin((double)g->wish[k], g->cap);
         const double dx = (r > 0 ? steep * x / r : steep) - s[0], dy = (r > 0 ? steep * y / r : 0) - s[1];
-        const uint32_t next_i = i + 1 < f.n ? i + 1 : 0, next_j = j + 1 < f.n ? j + 1 : 0;
-        g->gx[upper ? (size_t)i * f.n + next_j : index] += (float)(0.5 * dx);
-        g->gy[upper ? (size_t)next_i * f.n + j : index] += (float)(0.5 * dy);
+        const uint32_t next_i = i + 1 < f.nx ? i + 1 : 0, next_j = j + 1 < f.nx ? j + 1 : 0;
+        g->gx[upper ? (size_t)i * f.nx + next_j : index] += (float)(0.5 * dx);
+        g->gy[upper ? (size_t)next_i * f.nx + j : index] += (float)(0.5 * dy);
     }
 }
 

@@ -3,8 +3,8 @@
 /*
  * heightfield.h: a periodic surface of triangles, and its image under a linear map M.
  *
- * Heights h[i n + j] stand over the points (i, j) of a square lattice of cell size 1, i along x, j along y; beyond
- * n the surface repeats. Each cell splits along (i+1,j)-(i,j+1) into
+ * Heights h[i ny + j] stand over the points (i, j), nx by ny, of a square lattice of cell size 1, i along x, j along y;
+ * beyond these the surface repeats. Each cell splits along (i+1,j)-(i,j+1) into
  *     L = (i,j), (i+1,j), (i,j+1)      and      U = (i+1,j+1), (i,j+1), (i+1,j).
  * M maps positions in the plane and leaves heights: Eq. (9) of Microsurface Transformations (Atanasov et al. 2022).
  * m[4] is [a c; b d] row by row: x' = m[0] x + m[1] y, y' = m[2] x + m[3] y.
@@ -16,14 +16,18 @@
 #include <stdint.h>
 
 typedef struct mu_heightfield {
-    const double *h; /* n * n, borrowed */
-    uint32_t n;
+    const double *h; /* nx * ny, borrowed */
+    uint32_t nx, ny;
 } mu_heightfield;
 
 enum { MU_LOWER, MU_UPPER }; /* the two triangles of a cell */
 
+static inline size_t mu_cells(const mu_heightfield *f) {
+    return (size_t)f->nx * f->ny;
+}
+
 static inline double mu_height(const mu_heightfield *f, uint32_t i, uint32_t j) {
-    return f->h[(size_t)(i < f->n ? i : i - f->n) * f->n + (j < f->n ? j : j - f->n)];
+    return f->h[(size_t)(i < f->nx ? i : i - f->nx) * f->ny + (j < f->ny ? j : j - f->ny)];
 }
 
 /* dh/dx and dh/dy of a triangle before M: the differences of neighbouring heights. */

@@ -12,9 +12,9 @@
 enum { MU_PYRAMID_LEVELS = 16 };
 
 typedef struct mu_pyramid {
-    uint32_t n, levels;
-    uint32_t width[MU_PYRAMID_LEVELS];
-    const double *level[MU_PYRAMID_LEVELS]; /* the 0-th is the heights themselves */
+    uint32_t nx, ny, levels;
+    uint32_t height[MU_PYRAMID_LEVELS], width[MU_PYRAMID_LEVELS]; /* squares along i and along j */
+    const double *level[MU_PYRAMID_LEVELS];                       /* the 0-th is the heights themselves */
     double *storage;
 } mu_pyramid;
 

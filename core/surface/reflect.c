@@ -17,13 +17,13 @@ double mu_facet_mirror(const mu_heightfield *f, const double m[4], const double 
     for (int k = 0; k < 3; k++) normal[k] /= length;
     const double cosine = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
     for (int k = 0; k < 3; k++) r[k] = 2 * cosine * normal[k] - w[k];
-    return cosine > 0 ? cosine * length / (2 * macro * w[2] * f->n * f->n) : 0;
+    return cosine > 0 ? cosine * length / (2 * macro * w[2] * f->nx * f->ny) : 0;
 }
 
 void mu_reflect_row(const mu_caster *caster, const mu_heightfield *f, const double m[4], const double w[3],
                     int upper, uint32_t i, const uint8_t *seen, uint8_t *both) {
     mu_sight sight = {.m = {m[0], m[1], m[2], m[3]}, .u = upper ? 0.75 : 0.25, .v = 0.5, .upper = upper};
-    for (uint32_t j = 0; j < f->n; j++) {
+    for (uint32_t j = 0; j < f->ny; j++) {
         double normal[3];
         both[j] = seen[j] && mu_facet_mirror(f, m, w, i, j, upper, normal, sight.w) > 0 && sight.w[2] > 0 &&
                   mu_caster_sees(caster, &sight, i, j);
@@ -34,10 +34,10 @@ double mu_reflection_density(const mu_heightfield *f, const double m[4], const d
                              const uint8_t *const both[2], const mu_directions *d, double *out) {
     double albedo = 0, normal[3], r[3];
     memset(out, 0, (mu_directions_count(d) + 1) * sizeof *out);
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++)
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++)
             for (int upper = 0; upper < 2; upper++) {
-                if (!both[upper][(size_t)i * f->n + j]) continue;
+                if (!both[upper][(size_t)i * f->ny + j]) continue;
                 const double weight = mu_facet_mirror(f, m, w, i, j, upper, normal, r);
                 out[mu_directions_bin(d, r)] += weight;
                 albedo += weight;
@@ -50,10 +50,10 @@ void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[
                      const uint8_t *const both[2], const mu_directions *d, mu_group *groups) {
     double normal[3], r[3];
     memset(groups, 0, (mu_directions_count(d) + 1) * sizeof *groups);
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++)
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++)
             for (int upper = 0; upper < 2; upper++) {
-                if (!both[upper][(size_t)i * f->n + j]) continue;
+                if (!both[upper][(size_t)i * f->ny + j]) continue;
                 const double weight = mu_facet_mirror(f, m, w, i, j, upper, normal, r);
                 mu_group *group = &groups[mu_directions_bin(d, normal)];
                 for (int k = 0; k < 3; k++) group->normal[k] += weight * normal[k];

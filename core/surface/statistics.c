@@ -10,10 +10,10 @@ static const double pi = 3.14159265358979323846;
 
 void mu_slope_shares(const mu_heightfield *f, int upper, const mu_slope_law *law, uint32_t bins,
                      double *shares) {
-    const double one = 1 / ((double)f->n * f->n);
+    const double one = 1 / ((double)f->nx * f->ny);
     memset(shares, 0, bins * sizeof *shares);
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++) {
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++) {
             double s[2];
             mu_facet_slope(f, i, j, upper, s);
             const double place = bins * mu_slope_share(law, sqrt(s[0] * s[0] + s[1] * s[1]));
@@ -57,10 +57,10 @@ static void per_solid_angle(const mu_directions *d, double *out) {
 }
 
 void mu_normal_density(const mu_heightfield *f, const double m[4], const mu_directions *d, double *out) {
-    const double one = 1 / (2 * (double)f->n * f->n);
+    const double one = 1 / (2 * (double)f->nx * f->ny);
     memset(out, 0, (mu_directions_count(d) + 1) * sizeof *out);
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++)
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++)
             for (int upper = 0; upper < 2; upper++) {
                 double s[2], normal[3];
                 mu_facet_slope(f, i, j, upper, s);
@@ -74,17 +74,17 @@ void mu_normal_density(const mu_heightfield *f, const double m[4], const mu_dire
 
 void mu_visible_density(const mu_heightfield *f, const double m[4], const double w[3],
                         const double *const visible[2], const mu_directions *d, double *out) {
-    const double one = 1 / (2 * (double)f->n * f->n * fabs(m[0] * m[3] - m[1] * m[2]) * w[2]);
+    const double one = 1 / (2 * (double)f->nx * f->ny * fabs(m[0] * m[3] - m[1] * m[2]) * w[2]);
     memset(out, 0, (mu_directions_count(d) + 1) * sizeof *out);
-    for (uint32_t i = 0; i < f->n; i++)
-        for (uint32_t j = 0; j < f->n; j++)
+    for (uint32_t i = 0; i < f->nx; i++)
+        for (uint32_t j = 0; j < f->ny; j++)
             for (int upper = 0; upper < 2; upper++) {
                 double s[2], normal[3];
                 mu_facet_slope(f, i, j, upper, s);
                 mu_facet_normal(m, s, normal);
                 const double facing = w[0] * normal[0] + w[1] * normal[1] + w[2] * normal[2];
                 if (facing > 0)
-                    out[mu_directions_bin(d, normal)] += one * facing * visible[upper][(size_t)i * f->n + j];
+                    out[mu_directions_bin(d, normal)] += one * facing * visible[upper][(size_t)i * f->ny + j];
             }
     per_solid_angle(d, out);
 }

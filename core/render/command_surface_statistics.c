@@ -59,7 +59,8 @@ static const mu_usage usage = {
     options,
     /* clang-format off */
     MU_SURFACE_SOURCE_HELP
-    "Several FILEs are realisations of one kind of surface. Frame: x, y in the plane of the transformed surface, z up; directions point away from it and\n"
+    "Several FILEs are realisations of one kind of surface.\n"
+    "Frame: x, y in the plane of the transformed surface, z up; directions point away from it and\n"
     "are unit vectors in the output. Bins of directions: R rings of equal theta from +z (0 to 90 degrees),\n"
     "S sectors of equal phi from +x toward +y; a list holds bin ring * S + sector. Areas count per macro\n"
     "area, the surface's own in the plane. V is 1 where a point is seen, 0 for facets that turn away.\n"

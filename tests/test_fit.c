@@ -124,12 +124,12 @@ static void recover(const mu_case *c, uint64_t seed) {
     mu_generator *g = made(c->law, 256, seed);
     mu_heightfield f = mu_generator_surface(g);
     const _Bool open = c->tilt[0] != 0 || c->tilt[1] != 0;
-    double *h = malloc((size_t)f.n * f.n * sizeof *h);
+    double *h = malloc(mu_cells(&f) * sizeof *h);
     const double *m = c->m, det = m[0] * m[3] - m[1] * m[2];
-    for (uint32_t i = 0; i < f.n; i++)
-        for (uint32_t j = 0; j < f.n; j++)
-            h[i * f.n + j] = f.h[i * f.n + j] + c->tilt[0] * i + c->tilt[1] * j;
-    const mu_slopes s = {{h, f.n}, {m[3] / det, -m[2] / det, -m[1] / det, m[0] / det}, open};
+    for (uint32_t i = 0; i < f.nx; i++)
+        for (uint32_t j = 0; j < f.nx; j++)
+            h[i * f.nx + j] = f.h[i * f.nx + j] + c->tilt[0] * i + c->tilt[1] * j;
+    const mu_slopes s = {{h, f.nx, f.ny}, {m[3] / det, -m[2] / det, -m[1] / det, m[0] / det}, open};
     mu_fit *fit = calloc(1, sizeof *fit);
     fit->keep = 0.999, fit->tolerance = 0.02;
     mu_fit_slopes(fit, &s);

@@ -9,20 +9,22 @@
 
 #include "core/render/command_surface.h"
 #include "core/render/output.h"
-#include "core/render/surface_file.h"
+#include "core/render/surface_source.h"
 #include "core/render/surface_fit.h"
 
-enum { TRANSFORM, OPEN, KEEP, TOLERANCE, TABULATED, OUTPUT };
+enum { TRANSFORM, OPEN, KEEP, TOLERANCE, TABULATED, OUTPUT, SOURCE };
 
 static const mu_option options[] = {
     {"transform", "A,C,B,D", "fit the surface under M = [a c; b d], row by row (default: 1,0,0,1)"},
-    {"open", NULL, "the surface does not repeat: no facets across its last row and column"},
+    {"open", NULL,
+     "the surface does not repeat: no facets across its last row and column (as --border crop)"},
     {"keep", "Q",
      "share of facets, around their mean slope, whose slopes matter; of the steepest rest only the\n"
      "number does, for tails are clipped by makers and instruments (default: 0.999)"},
     {"tolerance", "T", "share of facets that a fit may misplace beyond what scatter does (default: 0.02)"},
     {"tabulated", "FILE", "also write the slopes as a material of ndf tabulated, whatever the verdict"},
     {"o", "FILE", "write the material, if one explains the surface"},
+    MU_SURFACE_SOURCE_OPTIONS,
     {NULL, NULL, NULL}};
 
 static const mu_usage usage = {
@@ -30,6 +32,8 @@ static const mu_usage usage = {
     "Finds the distribution and the map M that explain the facets of a heightfield best, or says why none "
     "does.\n",
     options,
+    MU_SURFACE_SOURCE_HELP
+    "Of a map that is no square, a square part is used.\n"
     "Candidates are ggx, beckmann, gtr, std, phong and sheen under every symmetric M of det M = 1 with every "
     "mean\n"
     "slope, and gtr under M of any scale; an ellipsoid is ggx. They are fitted by maximum likelihood. Errors "
@@ -57,7 +61,8 @@ typedef struct mu_asked {
     mu_fit fit;
     double m[4];
     _Bool open;
-    const char *file, *output, *tabulated;
+    mu_surface_source source;
+    const char *output, *tabulated;
 } mu_asked;
 
 static _Bool read_share(const mu_options *at, double *out) {
@@ -67,6 +72,7 @@ static _Bool read_share(const mu_options *at, double *out) {
 }
 
 static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
+    if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
     switch (met) {
     case TRANSFORM:
         return mu_options_transform(at, asked->m);
@@ -98,7 +104,7 @@ static int answer(mu_asked *asked, const mu_slopes *s) {
     int code = MU_EXIT_OK;
     mu_fit_slopes(&asked->fit, s);
     if (asked->fit.verdict == MU_FIT_NO_MEMORY)
-        return mu_refuse(&usage, "%s: not enough memory", asked->file);
+        return mu_refuse(&usage, "%s: not enough memory", asked->source.file);
     const _Bool found = asked->fit.verdict != MU_FIT_REFUSED;
     if (asked->tabulated) {
         if (!mu_surface_fit_tabulate(s, &json, &outside))
@@ -113,46 +119,48 @@ static int answer(mu_asked *asked, const mu_slopes *s) {
     mu_json_free(&json);
     if (code != MU_EXIT_OK) return complain(&error);
     errno = 0;
-    if (!mu_surface_fit_report(&asked->fit, asked->file, asked->tabulated, outside, stdout)) {
+    if (!mu_surface_fit_report(&asked->fit, asked->source.file, asked->tabulated, outside, stdout)) {
         fprintf(stderr, "musurf surface fit: standard output: %s\n", strerror(errno));
         return MU_EXIT_FAILED;
     }
     if (found) return MU_EXIT_OK;
-    fprintf(stderr, "musurf surface fit: %s: %s\n", asked->file, asked->fit.reason);
+    fprintf(stderr, "musurf surface fit: %s: %s\n", asked->source.file, asked->fit.reason);
     return MU_EXIT_FAILED;
 }
 
 static int fit(mu_asked *asked) {
     mu_error error = {.text = ""};
-    mu_slopes s = {.open = asked->open};
+    mu_slopes s = {.open = 0};
     const char *const files[] = {asked->output, asked->tabulated};
     for (int k = 0; k < 2; k++)
         if (files[k] && !mu_output_check(files[k], &error)) return complain(&error);
-    double *h = mu_surface_read(asked->file, &s.f.n, &error);
-    if (!h) return complain(&error);
+    mu_surface surface;
+    if (asked->open && !asked->source.border_given) asked->source.border = MU_BORDER_CROP;
+    if (!mu_surface_read(&asked->source, &surface, &error)) return complain(&error);
     const double *m = asked->m, det = m[0] * m[3] - m[1] * m[2];
-    s.f.h = h;
+    s.f = surface.f, s.open = asked->open || surface.open;
     s.cotransform[0] = m[3] / det, s.cotransform[1] = -m[2] / det; /* M^-T */
     s.cotransform[2] = -m[1] / det, s.cotransform[3] = m[0] / det;
     const int code = answer(asked, &s);
-    free(h);
+    mu_surface_free(&surface);
     return code;
 }
 
 int mu_command_surface_fit(int argc, char **argv) {
-    mu_asked asked = {.fit = {.keep = 0.999, .tolerance = 0.02}, .m = {1, 0, 0, 1}};
+    mu_asked asked = {
+        .source = mu_surface_source_begin(), .fit = {.keep = 0.999, .tolerance = 0.02}, .m = {1, 0, 0, 1}};
     int met;
     mu_options given = mu_options_begin(&usage, argc, argv);
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met == MU_OPTIONS_OPERAND) {
-            if (asked.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.file = given.value;
+            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
+            asked.source.file = given.value;
         } else if (met < 0) {
             return mu_options_exit(met);
         } else if (!read_option(&asked, &given, met)) {
             return MU_EXIT_REFUSED;
         }
     }
-    if (!asked.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
     return fit(&asked);
 }

@@ -57,7 +57,9 @@ typedef struct mu_cloud {
 
 /* Cells a side whose facets exist. */
 static inline uint32_t mu_slopes_side(const mu_slopes *s) {
-    return s->open ? s->f.n - 1 : s->f.n;
+    const uint32_t least =
+        s->f.nx < s->f.ny ? s->f.nx : s->f.ny; /* a square of cells; of a longer side its first part */
+    return s->open ? least - 1 : least;
 }
 
 static inline void mu_slope_at(const mu_slopes *s, uint32_t i, uint32_t j, int upper, double out[2]) {

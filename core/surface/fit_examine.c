@@ -20,7 +20,7 @@ static int rising(const void *a, const void *b) {
 /* The step of which all sampled heights are multiples, to a fiftieth (16 bits of range, rounded to floats, leave 0.008);
  * 0 if there is none. Gaps of less than 10^-6 of the range are rounding to floats. */
 static double height_step(const mu_heightfield *f, double *room) {
-    const uint64_t heights = (uint64_t)f->n * f->n;
+    const uint64_t heights = mu_cells(f);
     const uint32_t count = heights < MU_SAMPLE ? (uint32_t)heights : MU_SAMPLE;
     for (uint32_t k = 0; k < count; k++) room[k] = f->h[(uint64_t)k * heights / count];
     qsort(room, count, sizeof *room, rising);
@@ -65,7 +65,7 @@ static _Bool refuse(mu_fit *fit, const char *reason) {
 
 _Bool mu_fit_examine(mu_fit *fit, const mu_slopes *s, const double *sample, uint32_t count) {
     double low = s->f.h[0], high = low, extent = 0, middle[2], median = 0;
-    for (size_t k = 0; k < (size_t)s->f.n * s->f.n; k++) {
+    for (size_t k = 0; k < mu_cells(&s->f); k++) {
         if (!isfinite(s->f.h[k])) return refuse(fit, "there are heights that are not finite");
         low = fmin(low, s->f.h[k]), high = fmax(high, s->f.h[k]);
     }

@@ -73,6 +73,14 @@ def binned(bits, slopes, v, scale, edges):
     return np.array(seen), np.array(every)
 
 
+def per_bin(values, kind, count):
+    """Sums of [i, j, L|U] per block and bin, [block, bin]."""
+    n = len(values)
+    block = np.arange(n) * BLOCKS // n
+    where = (block[:, None] * BLOCKS + block)[..., None] * count + kind
+    return np.bincount(where.ravel(), values.ravel(), BLOCKS * BLOCKS * count).reshape(-1, count)
+
+
 def classes(slopes, alpha, m):
     """A class of like normals for every facet: 4 rings by 12 sectors of the untransformed slope, M^T slope."""
     x, y = np.tensordot(m.T, slopes, 1)
@@ -84,4 +92,4 @@ def joint(bits, slopes, a, b, directions, kinds):
     """Facets that face both directions: (seen by both, by a, by b, all) per class of normals and block, [4, class, block]."""
     both = (facing(slopes, directions[a]) > 0) & (facing(slopes, directions[b]) > 0)
     values = ((bits[a] & bits[b]).mean(-1), bits[a].mean(-1), bits[b].mean(-1), np.ones(both.shape))
-    return np.array([[per_block(x * (both & (kinds == k))) for k in range(48)] for x in values])
+    return np.array([per_bin(x * both, kinds, 48).T for x in values])

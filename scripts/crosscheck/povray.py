@@ -78,6 +78,11 @@ def scene(surface, h, m, lights, around):
     return "\n".join(text) + "\n"
 
 
+def version():
+    done = subprocess.run([find(), "--version"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    return next((x for x in (done.stdout + done.stderr).splitlines() if x.startswith("POV-Ray")), "POV-Ray").strip()
+
+
 def find():
     program = shutil.which(os.environ.get("POVRAY", "povray"))
     if not program:
@@ -92,13 +97,13 @@ def complaint(stderr):
     return "; ".join(wanted[:3] or lines[-3:]) or "no message"
 
 
-def run(text, folder, name, width, height):
-    """Renders the scene; returns (image [row, column, channel], {"seconds", "megabytes"})."""
+def run(text, folder, name, width, height, deep=False):
+    """Renders the scene; returns (image [row, column, channel] of 8 or, if deep, 16 bits, {"seconds", "megabytes"})."""
     folder = pathlib.Path(folder)
     (folder / f"{name}.pov").write_text(text)
     output = folder / f"{name}.ppm"
     output.unlink(missing_ok=True)
-    command = [find(), f"+I{name}.pov", f"+O{output.name}", "+FP", f"+W{width}", f"+H{height}",
+    command = [find(), f"+I{name}.pov", f"+O{output.name}", "+FP16" if deep else "+FP", f"+W{width}", f"+H{height}",
                "-A", "-D", "-C", "-P", "+WT1", "-GD", "-GR", "-V", "File_Gamma=1"]
     start = time.monotonic()
     with open(folder / f"{name}.log", "w+b") as log:
@@ -133,12 +138,13 @@ def watch(child):
 
 
 def read_ppm(path):
-    """A binary PPM of 8 bits as [row, column, channel]; row 0 is the highest."""
+    """A binary PPM of 8 or 16 bits as [row, column, channel]; row 0 is the highest."""
     data = path.read_bytes()
-    header = re.match(rb"P6\s+(?:#[^\n]*\n\s*)*(\d+)\s+(\d+)\s+255\s", data)
+    header = re.match(rb"P6\s+(?:#[^\n]*\n\s*)*(\d+)\s+(\d+)\s+(255|65535)\s", data)
     if not header:
-        raise PovrayError(f"{path.name}: POV-Ray wrote no 8-bit PPM")
-    return np.frombuffer(data, np.uint8, offset=header.end()).reshape(int(header[2]), int(header[1]), 3)
+        raise PovrayError(f"{path.name}: POV-Ray wrote no PPM of 8 or 16 bits")
+    kind = np.uint8 if header[3] == b"255" else ">u2"
+    return np.frombuffer(data, kind, offset=header.end()).reshape(int(header[2]), int(header[1]), 3)
 
 
 def visibility(image, n, directions=3):

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
-"""What the core says: JSON lines through the command `musurf eval`, in double precision."""
+"""What the core says: JSON lines through the commands `musurf eval` and `musurf sample`, in double precision.
+
+Answers are kept in the store under the bytes of the program and of the material plugin, so another core is asked anew.
+"""
 import json
 import os
 import pathlib
 import subprocess
 
 import numpy as np
+
+from . import store
 
 
 class PredictionError(Exception):
@@ -16,52 +21,62 @@ class PredictionError(Exception):
 class Core:
     """The command `musurf` of a build folder; plugin_path, if given, is where it looks for material plugins first."""
 
-    def __init__(self, program, plugin_path=None):
-        self.program = pathlib.Path(program)
+    def __init__(self, program, where, plugin_path=None):
+        self.program, self.store = pathlib.Path(program), where
         self.environment = dict(os.environ, **({"MUSURF_PLUGIN_PATH": str(plugin_path)} if plugin_path else {}))
         if not os.access(self.program, os.X_OK):
             raise PredictionError(f"{self.program} is not built; run make")
+        self.version = store.of_files(self.program)
+        said = subprocess.run([str(self.program), "info", "--json"], env=self.environment, capture_output=True, text=True)
+        if said.returncode:
+            raise PredictionError(f"musurf info ended with {said.returncode}: {said.stderr.strip()}")
+        self.plugin = store.of_files(json.loads(said.stdout)["plugin"]["file"])
 
-    def evaluate(self, alpha, m, records):
-        """Answers, in order, to records of wo and optional wm and wi, for the Beckmann surface of alpha under M."""
-        material = {"material": "musurf.microfacet", "ndf": "beckmann", "alpha": alpha, "transform": m.tolist()}
-        lines = [json.dumps({"id": k, "material": material, **{key: list(map(float, w)) for key, w in r.items()}})
-                 for k, r in enumerate(records)]
-        done = subprocess.run([str(self.program), "eval", "--precision", "double"], input="\n".join(lines) + "\n",
-                              env=self.environment, capture_output=True, text=True)
+    def run(self, arguments, text):
+        done = subprocess.run([str(self.program), *arguments], input=text, env=self.environment, capture_output=True, text=True)
         answers = [json.loads(line) for line in done.stdout.splitlines()]
-        if done.returncode or len(answers) != len(records):
-            wrong = next((a["error"] for a in answers if "error" in a), done.stderr.strip() or "no message")
-            raise PredictionError(f"musurf eval ended with {done.returncode}, "
-                                  f"{len(answers)} answers to {len(records)} lines: {wrong}")
+        wrong = next((a["error"] for a in answers if "error" in a), None)
+        if done.returncode or wrong:
+            raise PredictionError(f"musurf {arguments[0]} ended with {done.returncode}: "
+                                  f"{wrong or done.stderr.strip() or 'no message'}")
         return answers
 
-    def column(self, answers, name):
-        values = np.array([a[name] if a.get(name) is not None else np.nan for a in answers], float)
-        if not np.isfinite(values).all():
-            raise PredictionError(f'musurf eval gave no finite "{name}" for line {int(np.argmin(np.isfinite(values)))}')
-        return values
+    def ask(self, material, wanted, wo, wm=None, wi=None):
+        """{name: values} for the names wanted, one per direction: arrays [..., 3] that broadcast; colours by their first."""
+        given = {k: np.asarray(w, float) for k, w in (("wo", wo), ("wm", wm), ("wi", wi)) if w is not None}
+        shape = np.broadcast_shapes(*(w.shape for w in given.values()))
+        given = {k: np.broadcast_to(w, shape).reshape(-1, 3) for k, w in given.items()}
+        key = store.digest(self.version, self.plugin, material, wanted, given)
 
-    def masking(self, alpha, m, directions):
-        """G1 and sigma towards each direction; Smith's G1 is one for all normals that face it."""
-        answers = self.evaluate(alpha, m, [{"wo": v, "wm": (0, 0, 1)} for v in directions])
-        return self.column(answers, "G1"), self.column(answers, "sigma")
+        def make():
+            head = json.dumps({"material": material})[:-1]
+            lines = [head + "".join(f', "{k}": [{w[i, 0]!r}, {w[i, 1]!r}, {w[i, 2]!r}]' for k, w in plain.items()) + "}"
+                     for i in range(len(next(iter(plain.values()))))]
+            answers = self.run(["eval", "--precision", "double"], "\n".join(lines) + "\n")
+            if len(answers) != len(lines):
+                raise PredictionError(f"musurf eval gave {len(answers)} answers to {len(lines)} lines")
+            return {name: column(answers, name) for name in wanted}
 
-    def joint(self, alpha, m, a, b):
-        """G2 of a as viewer and b as light, as asked for and as it stands in the BRDF, f = F D G2 / (4 cos cos).
+        plain = {k: w.tolist() for k, w in given.items()}
+        plain = {k: np.array(w, dtype=object) for k, w in plain.items()}
+        return {k: v.reshape(shape[:-1]) for k, v in self.store.get("core", key, make).items()}
 
-        Where D underflows f tells nothing, and both are the former.
-        """
-        half = (np.asarray(a) + b) / np.linalg.norm(np.asarray(a) + b)
-        answers = self.evaluate(alpha, m, [{"wo": a, "wi": b, "wm": half}])
-        g2, d = (float(self.column(answers, name)[0]) for name in ("G2", "D"))
-        if not d > 1e-280:
-            return g2, g2
-        fresnel, f = (float(answers[0][name][0]) for name in ("F", "f"))
-        return g2, 4 * f * a[2] * b[2] / (d * fresnel)
+    def walk(self, material, wo, count, seed):
+        """(albedo, its standard error) from the weights of `count` samples."""
+        key = store.digest(self.version, self.plugin, material, np.asarray(wo), count, seed)
 
-    def distribution(self, alpha, m, normals):
-        """D at normals [..., 3], 1/sr."""
-        flat = normals.reshape(-1, 3)
-        answers = self.evaluate(alpha, m, [{"wo": (0, 0, 1), "wm": n} for n in flat])
-        return self.column(answers, "D").reshape(normals.shape[:-1])
+        def make():
+            line = json.dumps({"material": material, "wo": [float(x) for x in wo]})
+            answers = self.run(["sample", "--n", str(count), "--seed", str(seed)], line + "\n")
+            weights = np.array([np.ravel(a["weight"])[0] for a in answers], float)
+            return {"mean": weights.mean(), "error": weights.std(ddof=1) / np.sqrt(len(weights))}
+
+        said = self.store.get("walk", key, make)
+        return float(said["mean"]), float(said["error"])
+
+
+def column(answers, name):
+    values = np.array([np.nan if a.get(name) is None else np.ravel(a[name])[0] for a in answers], float)
+    if not np.isfinite(values).all():
+        raise PredictionError(f'musurf eval gave no finite "{name}" for line {int(np.argmin(np.isfinite(values)))}')
+    return values

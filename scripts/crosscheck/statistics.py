@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 
 FAMILY = 0.01  # the chance that a right core fails anywhere in one validation
+NORMAL = 10**9  # degrees of freedom of a normal value
 
 
 def mean(values):
@@ -44,21 +45,23 @@ def small_sample(count):
     return float(mpmath.sqrt(2 / (count - 1)) * mpmath.gamma(count / 2) / mpmath.gamma((count - 1) / 2))
 
 
-@functools.cache
-def student(freedom, tests):
-    """Two-sided quantile of Student's t for one of the given number of tests at the family's level (Sidak)."""
-    level = 1 - (1 - FAMILY) ** (1 / tests)
+@functools.lru_cache(None)
+def two_sided(t, freedom):
+    """P(|Student's t| >= t)."""
+    freedom = mpmath.mpf(freedom)
+    return float(mpmath.betainc(freedom / 2, 0.5, 0, freedom / (freedom + mpmath.mpf(t) ** 2), regularized=True))
 
-    def tail(t):
-        return mpmath.betainc(mpmath.mpf(freedom) / 2, 0.5, 0, freedom / (freedom + t * t), regularized=True) - level
 
-    low, high = mpmath.mpf(0), mpmath.mpf(2)
-    while tail(high) > 0:
+@functools.lru_cache(None)
+def student(freedom, level):
+    """The t that |Student's t| exceeds with probability `level`."""
+    low, high = 0.0, 2.0
+    while two_sided(high, freedom) > level:
         high *= 2
-    for _ in range(60):
+    for _ in range(50):
         middle = (low + high) / 2
-        low, high = (middle, high) if tail(middle) > 0 else (low, middle)
-    return float(high)
+        low, high = (middle, high) if two_sided(middle, freedom) > level else (low, middle)
+    return high
 
 
 def chance_variation(errors):

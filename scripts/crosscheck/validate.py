@@ -1,110 +1,119 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
-"""Runs the cross-check from the command line to the files it leaves."""
+"""The cross-check as a command: plan, surfaces, POV-Ray, comparison, verdicts, pictures, report fragment."""
 import base64
 import html
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
-import time
 
-from . import experiment, options as command_line, pictures, povray, predict, steps as progress, tables, verdicts
+from . import options as command_line
+from . import pictures, plan, povray, predict, run as running, scene, statistics, steps as progress, store, surfaces, tables, verdicts
 
-CAPTIONS = {"surfaces.png": "A corner of the surface and of its images from above, each in its own space, lit from Mv: light that goes "
-                            "with M leaves the same facets dark.",
-            "masking.png": "What the three views see (red, green, blue), in the coordinates of the original; below, "
-                           "the facets whose bits differ. The last column is lit from v instead of Mv: there it must differ.",
-            "g1.png": "G1: POV-Ray against the core.",
-            "normals.png": "Normals of the transformed facets against the core's D under M (Eq. 22)."}
+CAPTIONS = {"surfaces.png": "One surface under each M. Above: from above, lit from Mv (second view), M baked into the vertices. "
+                            "Below, in the original's coordinates: visible from the three views (red, green, blue); crosses where a bit differs.",
+            "g1.png": "G1 per slope along the view by POV-Ray, one standard error, against Smith.",
+            "normals.png": "Normals of the transformed facets against the core's D under M (Eq. 22).",
+            "deviations.png": "Deviations from the core with 99 % intervals. Green: agrees; orange: differs as Smith is known to; red: fails."}
 
 
-def write(path, text):
-    """Beside, then renamed."""
-    fresh = path.with_name(path.name + ".new")
-    fresh.write_text(text)
-    fresh.replace(path)
-
-
-def povray_version(program):
-    done = subprocess.run([program, "--version"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    return next((x for x in (done.stdout + done.stderr).splitlines() if x.startswith("POV-Ray")), "POV-Ray").strip()
-
-
-def fragment(result, folder):
-    """What the report takes over: verdict, pictures inside, tables, steps."""
+def fragment(result, folder, timing):
+    """What the report takes over: verdict, pictures inside, tables, times."""
     parts = ["<h2>Cross-check against POV-Ray</h2>", f"<p>{html.escape(result['summary'])}</p>",
              f"<p><code>{html.escape(result['command'])}</code> · {html.escape(result['povray'])}</p>"]
+    parts += [f"<p>Not checked: {html.escape(name)}, {html.escape(why)}</p>" for name, why in result["left_out"].items()]
     for name, caption in CAPTIONS.items():
         data = base64.b64encode((folder / name).read_bytes()).decode()
         parts.append(f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">'
                      f"<figcaption>{html.escape(caption)}</figcaption></figure>")
-    return "\n".join([*parts, tables.sections(result["checks"]), tables.steps(result["steps"])]) + "\n"
+    times = "; ".join(f"{t['step']} {t['seconds']:.1f} s" for t in timing)
+    return "\n".join([*parts, tables.sections(result["checks"]), f"<p>{html.escape(times)}</p>"]) + "\n"
 
 
-def judge(setup, measured, core, steps):
-    rows = verdicts.masking(setup, measured) + verdicts.control(setup, measured)
-    with steps.step("G1, sigma and G2 against the core"):
-        rows += verdicts.projected(setup, measured, core)
-        rows += verdicts.bins(setup, measured, core) + verdicts.joint(setup, measured, core)
-    with steps.step("normals against the core's D"):
-        found, shares = verdicts.distribution(setup, measured, core)
-    return rows + found, shares
+def planned(options):
+    """The plan, and {material that is left out: why}."""
+    how = plan.Plan("full" if options.full else "quick", options.seed, options.size)
+    left = {}
+    if options.heightfield:
+        how.replace([surfaces.Given(options.heightfield, 64)])
+    elif options.scene:
+        found, left = scene.materials(options.scene, options.size, options.seed * 1000)
+        how.replace(found)
+    return how.only(options.transform, options.view), left
 
 
-def run(options, build, command):
-    start = time.monotonic()
-    program, core = povray.find(), predict.Core(build / "musurf", options.plugin_path)
-    setup = experiment.Setup(alpha=options.alpha, size=options.size, correlation=8.0, seed=options.seed,
-                             realisations=options.surfaces, views=options.views, maps=options.maps, threads=options.threads)
-    core.masking(setup.alpha, setup.maps["identity"], setup.views)  # a core that cannot answer is found before the work
-    folder = pathlib.Path(options.output)
-    folder.mkdir(parents=True, exist_ok=True)
-    steps = progress.Steps(experiment.work(setup))
-    scratch = pathlib.Path(tempfile.mkdtemp(prefix="povray.", dir=folder))
+def check(options, build, command):
+    version, folder = povray.version(), pathlib.Path(options.output)
+    how, left = planned(options)
+    fresh = not folder.exists()
     try:
-        measured = experiment.run(setup, scratch, steps)
+        core = predict.Core(build / "musurf", store.Store(folder / "store"), options.plugin_path)
+    except BaseException:
+        if fresh:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+    steps = progress.Steps()
+    with running.alone(folder) as scratch:
+        one = running.Run(how, core, version, scratch, steps, options.threads)
+        rows, shares = measured(one, steps, scratch)
+        with steps.step("pictures"):
+            pictures.surfaces(one, folder / "surfaces.png")
+            pictures.per_slope(rows, folder / "g1.png")
+            pictures.distributions(shares, folder / "normals.png")
+            pictures.deviations(rows, folder / "deviations.png")
+        return written(rows, left, how, version, folder, steps, command)
+
+
+def measured(one, steps, scratch):
+    """Judged rows, and shares of normals. A scene that POV-Ray failed on is kept."""
+    try:
+        with steps.step("making surfaces"):
+            one.make_surfaces()
+            one.enumerate()
+        with steps.step("measuring"):
+            one.measure()
     except povray.PovrayError as error:
-        raise povray.PovrayError(f"{error} (kept in {scratch})") from None
+        raise povray.PovrayError(f"{error} (kept in {scratch} until the next run)") from None
     except BaseException:
         shutil.rmtree(scratch, ignore_errors=True)
         raise
     shutil.rmtree(scratch)
-    rows, shares = judge(setup, measured, core, steps)
-    steps.finish()
-    with steps.step("pictures"):
-        pictures.surfaces(setup, measured, folder / "surfaces.png")
-        pictures.masks(setup, measured, folder / "masking.png")
-        pictures.masking_functions(setup, rows, folder / "g1.png")
-        pictures.distributions(shares, folder / "normals.png")
-    failed = sum(r["verdict"] == verdicts.FAILS for r in rows)
-    known = sum(r["verdict"] == verdicts.KNOWN for r in rows)
-    seconds = time.monotonic() - start
-    summary = (f"{len(rows) - failed - known} comparisons agree, {known} differ as Smith's model is known to, "
-               f"{failed} fail; {seconds:.0f} s")
-    result = {"verdict": "FAILS" if failed else "agrees", "summary": summary, "command": command,
-              "povray": povray_version(program), "alpha": setup.alpha, "size": setup.size, "seed": setup.seed,
-              "correlation": setup.correlation, "surfaces": setup.realisations, "surfaces_of_normals": experiment.PLAIN,
-              "views": [v.tolist() for v in setup.views], "maps": {k: m.tolist() for k, m in setup.maps.items()},
-              "seconds": seconds, "steps": steps.list, "checks": rows}
-    write(folder / "fragment.html", fragment(result, folder))
-    write(folder / "validate.json", tables.dumps(result))
+    with steps.step("comparing"):
+        rows, shares = one.compare()
+    return verdicts.judge(rows), shares
+
+
+def written(rows, left, how, version, folder, steps, command):
+    """The result, also as files. Times have a file of their own: the result is the same for every run."""
+    count = {v: sum(r["verdict"] == v for r in rows) for v in (verdicts.AGREES, verdicts.KNOWN, verdicts.FAILS)}
+    result = {"verdict": "FAILS" if count[verdicts.FAILS] else "agrees",
+              "summary": f"{count[verdicts.AGREES]} comparisons agree, {count[verdicts.KNOWN]} differ as Smith's model is known to, "
+                         f"{count[verdicts.FAILS]} fail", "command": command, "povray": version, "size": how.size, "seed": how.seed,
+              "significance": statistics.FAMILY, "left_out": left,
+              "surfaces": {s.name: {"material": s.material() if not s.file else str(s.file), "alpha": s.alpha, "map": s.base.tolist()}
+                           for s in how.surfaces},
+              "realisations": {"looked at": how.seen, "normals": how.plain, "reflecting": how.mirrors},
+              "looks": {name: [v.tolist() for v in views] for name, views, _ in how.looks},
+              "maps": {k: m.tolist() for k, m in how.maps.items()}, "checks": rows}
+    store.write(folder / "fragment.html", fragment(result, folder, steps.list))
+    store.write(folder / "times.json", tables.dumps(steps.list))
+    store.write(folder / "validate.json", tables.dumps(result))
     return result
 
 
 def main(arguments, build):
     options = command_line.parse(arguments, str(build))
     try:
-        result = run(options, build, "scripts/validate " + " ".join(arguments))
-    except (povray.PovrayError, predict.PredictionError, OSError) as error:
+        result = check(options, pathlib.Path(build), "scripts/validate " + " ".join(arguments))
+    except (povray.PovrayError, predict.PredictionError, surfaces.SurfaceError, scene.SceneError, OSError) as error:
         print(f"validate: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("validate: interrupted", file=sys.stderr)
+        print("validate: interrupted; started again, it goes on from here", file=sys.stderr)
         return 130
     if options.json:
         print(tables.dumps(result), end="")
     else:
-        print("\n".join([*tables.lines(result["checks"]), f"{result['verdict']}: {result['summary']}"]))
+        print("\n".join([*tables.lines(result["checks"]), *(f"not checked: {k}: {v}" for k, v in result["left_out"].items()),
+                         f"{result['verdict']}: {result['summary']}"]))
     return 1 if result["verdict"] == "FAILS" else 0

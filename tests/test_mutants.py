@@ -4,7 +4,8 @@
 """The tests, tested: wrong versions of the core must each be rejected by at least one check, the right one by none.
 
 core/bsdf/mutant.h holds the mistakes. For each, core and plugin alone are built again below $BUILD/mutants/n, and the fast
-checks run with that plugin until one rejects it. Prints which check rejects which mutant, and writes that to
+checks run with that plugin until one rejects it. Three of them also go through scripts/validate, whose POV-Ray measurements are taken
+once, with the right core: it must fail and name what disagrees. Prints which check rejects which mutant, and writes that to
 $BUILD/mutants.json: true, false, or null where the mutant was dead already.
 """
 import concurrent.futures
@@ -82,9 +83,37 @@ def rejects(check, folder):
     return done.returncode != 0
 
 
+# What scripts/validate must name, of the mutants that it must find by itself: one map, one view, small surfaces.
+VALIDATE = {1: ("D facet by facet", "D of normals"), 2: ("D facet by facet", "sigma", "G1 projected mean"),
+            4: ("G2 itself", "albedo, one reflection")}
+SMALL = ["--quick", "--size", "64", "--transform", "1,2,0,1", "--view", ".8,.3,.5", "--json"]
+
+
+def validate(number, folder):
+    """Whether the validation fails; the right core's run, the first, leaves the measurements to the others."""
+    output = BUILD / "mutants" / "validate" / str(number)
+    shutil.rmtree(output, ignore_errors=True)
+    if number:
+        output.mkdir(parents=True)
+        shutil.copytree(output.parent / "0" / "store", output / "store")
+    done = subprocess.run([sys.executable, str(ROOT / "scripts/validate"), *SMALL, "-o", str(output), "--plugin-path", str(folder)],
+                          cwd=ROOT, env=environment(BUILD=str(BUILD)), stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode not in (0, 1) or not done.stdout:
+        sys.exit(f"validate did not run: exit {done.returncode}\n{done.stderr[-1500:]}")
+    failing = {row["check"] for row in json.loads(done.stdout)["checks"] if row["verdict"] == "FAILS"}
+    if number and not failing >= set(VALIDATE[number]):
+        print(f"validate names {sorted(failing)} of mutant {number}, but not all of {VALIDATE[number]}")
+        return False
+    if not number and failing:
+        print(f"validate fails the right core: {sorted(failing)}")
+    return bool(failing)
+
+
 def judge(number):
-    """What each check says of a mutant: True, it rejects it; None: another one already has."""
-    folder, verdicts = build(number), dict.fromkeys(CHECKS)
+    """What each check says of a mutant: True, it rejects it; None: another one already has, or it is not asked."""
+    folder, verdicts = build(number), dict.fromkeys([*CHECKS, "validate"])
+    if number in VALIDATE:
+        verdicts["validate"] = validate(number, folder)
     for check in CHECKS:
         verdicts[check] = rejects(check, folder)
         if verdicts[check] and number:
@@ -96,19 +125,22 @@ def main():
     known = mutants()
     if sorted(known) != list(range(1, len(known) + 1)) or len(known) < 12:
         sys.exit(f"mutants could not be read from core/bsdf/mutant.h: {known}")
+    right_validates = not validate(0, BUILD)
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         matrix = dict(zip([0, *known], pool.map(judge, [0, *known])))
+    matrix[0]["validate"] = not right_validates
     width = max(map(len, known.values()))
-    print(f"{'mutant':{width + 3}}" + "".join(f"{check:>11}" for check in CHECKS))
+    print(f"{'mutant':{width + 3}}" + "".join(f"{check:>11}" for check in [*CHECKS, "validate"]))
     good, rows = True, []
     for number, verdicts in matrix.items():
-        right = any(verdicts.values()) == (number > 0)
+        right = any(verdicts[check] for check in CHECKS) == (number > 0) and (verdicts["validate"] is None or
+                                                                              verdicts["validate"] == (number > 0))
         good &= right
         rows.append({"mutant": number, "what": known.get(number, "none: the right core"), "as_it_should_be": right, **verdicts})
         words = {True: "killed", False: "-", None: ""}
         print(f"{number:2} {known.get(number, '(none)'):{width}}" + "".join(f"{words[hit]:>11}" for hit in verdicts.values())
               + ("" if right else "   WRONG"))
-    (BUILD / "mutants.json").write_text(json.dumps({"checks": list(CHECKS), "mutants": rows}, indent=1) + "\n")
+    (BUILD / "mutants.json").write_text(json.dumps({"checks": [*CHECKS, "validate"], "mutants": rows}, indent=1) + "\n")
     print("every mutant is killed, the right core is not" if good else "FAILED: a mutant lives, or the right core is rejected")
     return 0 if good else 1
 

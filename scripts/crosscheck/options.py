@@ -62,7 +62,7 @@ def parse(arguments, build):
     how = p.add_mutually_exclusive_group()
     how.add_argument("--quick", action="store_true", help="two distributions, four maps (default)")
     how.add_argument("--full", action="store_true", help="seven distributions, eight maps up to condition 100, more views and lights")
-    p.add_argument("--heightfield", metavar="FILE", help="check this surface (n x n, periodic, float EXR or .npy) instead")
+    p.add_argument("--heightfield", metavar="FILE", help="check this surface (as musurf surface make writes: EXR, n x n, periodic) instead")
     p.add_argument("--transform", metavar="a,c,b,d", type=transform, action="append", default=[],
                    help="under this M, rows [a c] and [b d], and the identity instead; may be repeated")
     p.add_argument("--view", metavar="x,y,z", type=view, action="append", default=[],
@@ -70,7 +70,7 @@ def parse(arguments, build):
     p.add_argument("--json", action="store_true", help="validate.json on stdout instead of verdict lines")
     p.add_argument("-o", metavar="DIR", dest="output", default=os.path.join(build, "validate"), help="output folder (%(default)s)")
     p.add_argument("--seed", type=bounded(int, 1, 2**31), default=2022, help="of surfaces and the random M (%(default)s)")
-    p.add_argument("--size", type=bounded(int, 64, 1024), default=256, help="cells per side of the period (%(default)s)")
+    p.add_argument("--size", type=bounded(int, 64, 1024), help="cells per side of the period (192; 256 with --full)")
     p.add_argument("--threads", type=bounded(int, 1, 256), default=os.cpu_count() or 1,
                    help="POV-Ray processes at a time (%(default)s); the result does not depend on it")
     p.add_argument("--plugin-path", metavar="DIR", help="where musurf looks for material plugins (MUSURF_PLUGIN_PATH)")

@@ -9,7 +9,7 @@ VIEWS = (maps.direction(60, 20), maps.direction(75, 50), maps.direction(85, 200)
 # lights beside views: azimuths 10, 80 and 90 degrees apart, of like elevation
 LIGHTS = (maps.direction(75, 0), maps.direction(75, 10), maps.direction(60, 90))
 MIRROR_VIEWS = {"quick": (maps.direction(60, 20),),
-                "full": (maps.direction(30, 20), maps.direction(60, 20), maps.direction(75, 50))}
+                "full": (maps.direction(60, 20), maps.direction(75, 50))}
 DISTRIBUTIONS = {
     "quick": {"Beckmann .3": {"ndf": "beckmann", "alpha": 0.3}, "GGX .3": {"ndf": "ggx", "alpha": 0.3}},
     "full": {"Beckmann .3": {"ndf": "beckmann", "alpha": 0.3}, "Beckmann .6": {"ndf": "beckmann", "alpha": 0.6},
@@ -32,28 +32,29 @@ def all_maps(seed, how):
     return chosen
 
 
-# Maps under which light is traced on: none makes the surface rougher than is known of Smith's error (compression .5)
-MIRROR_MAPS = {"quick": ("identity", "skew", "random mirror"), "full": ("identity", "stretch 5x", "skew", "compression .5x")}
+# Maps under which light is traced on: none makes the surface rougher in any direction than the compression, which is as far as
+# Smith's error is known (known.py)
+MIRROR_MAPS = {"identity": np.eye(2), "half skew": np.array([[1.0, 1.0], [0.0, 1.0]]), "stretch 5x": np.diag([5.0, 1.0]),
+               "mirrored skew": np.array([[1.0, 0.8], [0.0, -1.0]]), "compression .5x": np.diag([1.0, 0.5])}
+MIRRORS = {"quick": ("identity", "half skew", "mirrored skew"), "full": ("identity", "stretch 5x", "mirrored skew", "compression .5x")}
 
 
 class Plan:
     """surfaces [Spec or Given], maps {name: M}, looks [(name, views, names of maps)], mirror maps and views, counts."""
 
     def __init__(self, how, seed, size=None):
-        self.how, self.seed, self.size = how, seed, size or 256
         quick = how == "quick"
+        self.how, self.seed, self.size = how, seed, size or (192 if quick else 256)
         self.surfaces = [surfaces.Spec(name, self.size, seed * 1000, **values) for name, values in DISTRIBUTIONS[how].items()]
         self.maps = all_maps(seed, how)
         lights = list(self.maps) if quick else ["identity", "skew", "random mirror"]
         self.looks = [("views", VIEWS, list(self.maps))] + ([] if quick else [("lights", LIGHTS, lights)])
-        self.seen = 2 if quick else 3  # realisations that are looked at
+        self.seen = 2  # realisations that are looked at
         self.plain = 8 if quick else 16  # realisations whose normals are counted
-        self.mirrors = 4 if quick else 5  # realisations that reflect
+        self.mirrors = 4  # realisations that reflect
         self.resolution = 307 if quick else 401  # pixels a side; prime, lest they fall in step with the cells
-        known = {**self.maps, "compression .5x": np.diag([1.0, 0.5])}
-        self.mirror_maps = {name: known[name] for name in MIRROR_MAPS[how]}
+        self.mirror_maps = {name: MIRROR_MAPS[name] for name in MIRRORS[how]}
         self.mirror_views = MIRROR_VIEWS[how]
-        self.controls = True
 
     def only(self, transforms, views):
         """What the user asks for: these maps besides the identity, these views of the original."""

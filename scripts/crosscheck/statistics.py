@@ -2,16 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """Means over realisations, their standard errors, and how far chance may carry them."""
 import functools
+import math
+import threading
 
 import mpmath
 import numpy as np
 
+ONE_AT_A_TIME = threading.Lock()  # mpmath changes its precision on the way, for all threads
 FAMILY = 0.01  # the chance that a right core fails anywhere in one validation
 NORMAL = 10**9  # degrees of freedom of a normal value
 
 
-def mean(values):
-    return float(np.mean(values))
 
 
 def standard_error(values):
@@ -41,15 +42,15 @@ def dependence(both, a, b, every):
 
 def small_sample(count):
     """Mean of a sample's standard deviation over the true one, for normal values."""
-    count = mpmath.mpf(count)
-    return float(mpmath.sqrt(2 / (count - 1)) * mpmath.gamma(count / 2) / mpmath.gamma((count - 1) / 2))
+    return math.sqrt(2 / (count - 1)) * math.exp(math.lgamma(count / 2) - math.lgamma((count - 1) / 2))
 
 
 @functools.lru_cache(None)
 def two_sided(t, freedom):
     """P(|Student's t| >= t)."""
-    freedom = mpmath.mpf(freedom)
-    return float(mpmath.betainc(freedom / 2, 0.5, 0, freedom / (freedom + mpmath.mpf(t) ** 2), regularized=True))
+    with ONE_AT_A_TIME:
+        freedom = mpmath.mpf(freedom)
+        return float(mpmath.betainc(freedom / 2, 0.5, 0, freedom / (freedom + mpmath.mpf(t) ** 2), regularized=True))
 
 
 @functools.lru_cache(None)

@@ -13,7 +13,7 @@ import zlib
 
 import numpy as np
 
-from . import store
+from . import heightfield, store
 
 CLIP = 0.9999  # quantile above which no slope is made: what is above would be spires of one cell
 CORRELATION = 8.0  # cells
@@ -61,39 +61,35 @@ class Spec:
 
 
 class Given:
-    """A heightfield of the user's. Its material is the distribution of its own slopes, tabulated."""
+    """A heightfield of the user's. Its material is the distribution of its own slopes, tabulated by the core."""
 
-    def __init__(self, file, cells):
-        self.file = pathlib.Path(file)
+    CELLS = 64  # a side, of the table
+
+    def __init__(self, file):
+        self.file, self.copy = pathlib.Path(file), None
         try:
-            h = np.load(self.file, allow_pickle=False) if self.file.suffix == ".npy" else read_exr(self.file)
-        except (OSError, ValueError, struct.error, zlib.error, IndexError) as error:
+            self.h = read_exr(self.file).astype(float)
+        except (OSError, ValueError, struct.error, zlib.error, IndexError, KeyError) as error:
             raise SurfaceError(f"{file}: {error}") from None
-        if h.ndim != 2 or h.shape[0] != h.shape[1] or not 16 <= len(h) <= 2048 or not np.isfinite(h).all():
-            raise SurfaceError(f"{file}: is not n x n finite heights with n from 16 to 2048, but {h.shape}")
-        self.h, self.name, self.size, self.cells = h.astype(float), self.file.name, len(h), cells
-        x, y = slopes_of(self.h)
-        if not np.ptp(x) + np.ptp(y) > 0:
+        if self.h.shape[0] != self.h.shape[1] or not 16 <= len(self.h) <= 2048 or not np.isfinite(self.h).all():
+            raise SurfaceError(f"{file}: is not n x n finite heights with n from 16 to 2048, but {self.h.shape}")
+        self.name, self.size, self.base, self.parameters = self.file.name, len(self.h), np.eye(2), None
+        self.alpha = float(np.median(np.hypot(*heightfield.slopes(self.h))))  # as of ggx
+        if not self.alpha > 0:
             raise SurfaceError(f"{file}: is flat; there is nothing to mask")
-        self.alpha = float(np.median(np.hypot(x, y)))  # as of ggx
-        self.base, self.parameters = np.eye(2), None
 
     def material(self):
-        x, y = (a.ravel() for a in slopes_of(self.h))
-        reach = 1.001 * max(abs(x).max(), abs(y).max())
-        counts, _, _ = np.histogram2d(y, x, self.cells, [[-reach, reach]] * 2)
-        return {"material": "musurf.microfacet", "ndf": "tabulated",
-                "histogram": {"bounds": [-reach, reach, -reach, reach], "weights": counts.astype(int).tolist()}}
+        return {"material": "musurf.microfacet", "ndf": "tabulated", "histogram": {"heightfield": str(self.copy), "bins": self.CELLS}}
 
     def heights(self, core, number):
+        """The one realisation. A copy named after its content is what the core reads, so that no answer outlives it."""
         if number:
             raise SurfaceError("a given heightfield is one realisation")
-        return self.h, float(np.hypot(*slopes_of(self.h)).max())
-
-
-def slopes_of(h):
-    from . import heightfield
-    return heightfield.slopes(h)
+        data = self.file.read_bytes()
+        self.copy = core.store.folder.resolve() / f"heightfield-{store.digest(data)[:40]}.exr"
+        if not self.copy.exists():
+            store.write(self.copy, data)
+        return self.h, float(np.hypot(*heightfield.slopes(self.h)).max())
 
 
 def read_exr(path):

@@ -35,9 +35,9 @@ def planned(options):
     how = plan.Plan("full" if options.full else "quick", options.seed, options.size)
     left = {}
     if options.heightfield:
-        how.replace([surfaces.Given(options.heightfield, 64)])
+        how.replace([surfaces.Given(options.heightfield)])
     elif options.scene:
-        found, left = scene.materials(options.scene, options.size, options.seed * 1000)
+        found, left = scene.materials(options.scene, how.size, options.seed * 1000)
         how.replace(found)
     return how.only(options.transform, options.view), left
 

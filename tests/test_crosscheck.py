@@ -134,7 +134,7 @@ class PovrayAgainstExactCaster(unittest.TestCase):
     def test_wrong_directions_are_noticed(self):
         inverse = np.linalg.inv(SKEW)
         for lights in (VIEWS, [maps.carried(inverse, v) for v in VIEWS], [maps.carried(SKEW.T, v) for v in VIEWS]):
-            self.assertTrue((self.differing(SKEW, lights) >= compare_masking.CONTROL_LIMIT).all())
+            self.assertTrue((self.differing(SKEW, lights) >= 100 * compare_masking.MASKING_LIMIT).all())
 
     def test_centre_is_the_single_sample(self):
         bits = look(self.h, np.eye(2), VIEWS)
@@ -299,12 +299,18 @@ class CommandLine(unittest.TestCase):
 
 
 class Resuming(unittest.TestCase):
-    """Killed in the middle and started again, it ends as if nothing had been, to the bit; asked again, nothing is measured."""
+    """Killed in the middle and started again, it ends as if nothing had been, to the bit."""
 
-    SMALL = ["--size", "64", "--transform", "1,2,0,1", "--view", ".8,.3,.5", "--threads", "2"]
+    SMALL = ["--transform", "1,2,0,1", "--view", ".8,.3,.5", "--view=.3,-.4,.3", "--threads", "2"]
 
     def start(self, folder):
-        return subprocess.Popen([sys.executable, str(ROOT / "scripts" / "validate"), "-o", str(folder), *self.SMALL], cwd=ROOT,
+        """On a heightfield, which needs one surface only."""
+        file = folder.parent / "h.exr"
+        if not file.exists():
+            subprocess.run([str(BUILD / "musurf"), "surface", "make", "--ndf=ggx", "--alpha=.4", "--size=32", "--seed=8", "-o", str(file)],
+                           check=True, stdout=subprocess.DEVNULL)
+        return subprocess.Popen([sys.executable, str(ROOT / "scripts" / "validate"), "-o", str(folder), f"--heightfield={file}",
+                                 *self.SMALL], cwd=ROOT,
                                 env=dict(os.environ, BUILD=str(BUILD)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, start_new_session=True)
 
@@ -326,11 +332,6 @@ class Resuming(unittest.TestCase):
             self.assertIn("were taken before", err)
             resumed = (folder / "validate.json").read_bytes()
             self.assertGreater(len(list(folder.glob("store/*.npz"))), before)
-            files = {p: p.stat().st_mtime_ns for p in folder.glob("store/*.npz")}
-            again = self.start(folder)
-            again.communicate(timeout=900)
-            self.assertEqual((folder / "validate.json").read_bytes(), resumed)
-            self.assertEqual({p: p.stat().st_mtime_ns for p in folder.glob("store/*.npz")}, files)
             # and all of it anew, in the same folder, since the result tells its command
             shutil.rmtree(folder)
             fresh = self.start(folder)

@@ -13,8 +13,6 @@ FAMILY = 0.01  # the chance that a right core fails anywhere in one validation
 NORMAL = 10**9  # degrees of freedom of a normal value
 
 
-
-
 def standard_error(values):
     """Of the mean over realisations, the first axis."""
     values = np.asarray(values, float)

@@ -11,8 +11,8 @@ EXPLAIN = {
     "masking": "(a) Bits of visibility of the original from v (POV-Ray's height_field) against those of the transformed mesh, "
                "M baked into its vertices, from Mv/|Mv|, at the same points, 9 in each facet. "
                "Eq. (11), pure geometry; at most 1e-4 may differ, for rays that graze an edge within POV-Ray's precision.",
-    "control": "The same comparison with the light in a wrong direction. It must fail by at least 1e-2 of the bits, or the "
-               "masking check would prove nothing.",
+    "control": "The same comparison with the light in a wrong direction. It must fail ten times over, or the masking check "
+               "would prove nothing.",
     "D facet by facet": "(b) Eq. (22) for every facet: the core's D at the baked facet's normal under M, against its D at the "
                "original facet's without M, by the facets' own cosines and |det M|; for the analytic D and for the measured one, "
                "tabulated. An identity to rounding; the bound follows from the vertices' rounding.",

@@ -222,6 +222,8 @@ class Statistics(unittest.TestCase):
         self.assertAlmostEqual(statistics.student(10, 0.01), 3.1693, places=4)
         self.assertAlmostEqual(statistics.two_sided(5.8409, 3), 0.01, places=6)
         self.assertAlmostEqual(statistics.student(statistics.NORMAL, 0.01), 2.5758, places=4)
+        for freedom in (31, 63, statistics.NORMAL):  # far out it is small, not an exception
+            self.assertLess(statistics.two_sided(1e4, freedom), 1e-30)
 
     def test_ratio_of_blocks(self):
         random = np.random.default_rng(1)

@@ -94,12 +94,12 @@ def albedo(parameters, m):
 
 
 def prestudied(kind, parameters, rough):
-    """Ranges over the prestudy's views and maps of the same distribution, if one of them was as rough as this."""
-    chosen = [e for e in prestudy() if e["kind"] == kind and shape(e["surface"]) == shape(parameters)]
-    roughest = max((e["surface"]["alpha"] / (0.5 if e["map"] == "compression .5x" else 1) for e in chosen), default=0)
-    if rough > roughest * 1.0001:
-        return []
-    return [(e["deviation"][0] - ERRORS * e["error"][0], e["deviation"][0] + ERRORS * e["error"][0]) for e in chosen]
+    """Ranges over the prestudy's views and maps of the same distribution that are no rougher than the first as rough as this."""
+    chosen = [(e["surface"]["alpha"] / (0.5 if e["map"] == "compression .5x" else 1), e) for e in prestudy()
+              if e["kind"] == kind and shape(e["surface"]) == shape(parameters)]
+    enough = [r for r, _ in chosen if r >= rough * 0.9999]
+    errors = [(e["deviation"][0], ERRORS * e["error"][0]) for r, e in chosen if enough and r <= min(enough)]
+    return [(middle - error, middle + error) for middle, error in errors]
 
 
 def all_orders(kind, parameters, m):

@@ -45,7 +45,9 @@ def small_sample(count):
 
 @functools.lru_cache(None)
 def two_sided(t, freedom):
-    """P(|Student's t| >= t)."""
+    """P(|Student's t| >= t); of a normal value from NORMAL degrees of freedom on."""
+    if freedom >= NORMAL:
+        return math.erfc(t / math.sqrt(2))
     with ONE_AT_A_TIME:
         freedom = mpmath.mpf(freedom)
         return float(mpmath.betainc(freedom / 2, 0.5, 0, freedom / (freedom + mpmath.mpf(t) ** 2), regularized=True))

@@ -3,7 +3,7 @@
 """What views see: invariance bit by bit, G1 and visible normals against Smith, G2 against its three forms."""
 import numpy as np
 
-from . import expect, known, laws, maps, measure, normals, statistics
+from . import expect, known, laws, maps, measure, normals, statistics, surfaces
 from .verdicts import bounded, label, statistical
 
 MASKING_LIMIT = 1e-4  # of the bits; 3e-5 are seen: height_field is not mesh2 to the last bit where a ray grazes an edge
@@ -21,6 +21,16 @@ def unpacked(job):
 def differing(a, b, views):
     """Bits that differ, per view."""
     return (unpacked(a) != unpacked(b))[: views * int(a["total"])].reshape(views, -1).sum(1)
+
+
+def patch(jobs):
+    """What one correlation area seen or unseen would change, in shares of all the surfaces.
+
+    Facets are hidden in patches of about this size. Where few are, blocks without any have no scatter, and the standard error
+    from blocks knows nothing of the next patch: so one is added to it, in quadrature.
+    """
+    cells = sum(int(job["total"]) for job in jobs) / (2 * measure.FINE**2)
+    return surfaces.CORRELATION**2 / cells
 
 
 def invariance(spec, look, views, name, jobs, originals, first):
@@ -61,12 +71,14 @@ def smith(spec, core, views, name, m, jobs, limit):
     for k, (view, w) in enumerate(zip(views, directions)):
         top, bottom = blocks(jobs, "projected", k)
         mean, error = statistics.ratio(top, bottom)
+        error = np.hypot(error, patch(jobs))
         clip = laws.clipped(parameters, limit) / np.linalg.norm([*(m @ view[:2]), view[2]]) / np.pi * np.hypot(*view[:2])
         yield statistical("G1 projected mean", spec.name, name, label(view), mean, error, len(top) - 1, g1[k], tracer="povray",
                           exact=(g1[k] * (1 - SAMPLING), min(1.0, w[2] / max(sigma[k] - clip, w[2])) * (1 + SAMPLING)))
         scale = measure.nu(view, spec.alpha)
         seen, every = blocks(jobs, f"bins{k}")
         value, error = statistics.ratio(seen, every)
+        error = np.hypot(error, patch(jobs))
         cuts = measure.edges(scale)
         deviations = []
         for b in range(len(value)):
@@ -111,6 +123,7 @@ def joint(spec, core, views, name, m, jobs):
     for number, (a, b) in enumerate(measure.pairs(views)):
         both, seen_a, seen_b, every = blocks(jobs, "joint", number)
         ratio, error = statistics.dependence(both, seen_a, seen_b, every)
+        error = np.hypot(error, patch(jobs))
         independent = (seen_a.sum(-1) * seen_b.sum(-1) / np.maximum(every.sum(-1), 1)).sum()
         most = float(np.minimum(seen_a.sum(-1), seen_b.sum(-1)).sum() / independent)
         where = f"{label(views[a])} and {label(views[b])}"

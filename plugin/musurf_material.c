@@ -95,7 +95,9 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     const int in_float = float_suffices(&p);
     const size_t head = padded(sizeof(musurf_material)),
                  double_bytes = padded(mu_surface_bytes_d(&p.definition));
-    const size_t bytes = head + double_bytes + (in_float ? padded(mu_surface_bytes_f(&p.definition)) : 0);
+    mu_definition borrows = p.definition; /* float shading takes the tables of double's */
+    borrows.compensation_tables = (const mu_albedo_set *)(const void *)&p;
+    const size_t bytes = head + double_bytes + (in_float ? padded(mu_surface_bytes_f(&borrows)) : 0);
     musurf_material *m = obtain(host, bytes);
     if (!m) return MUSURF_NO_MEMORY;
     memset(m, 0, sizeof *m);
@@ -106,6 +108,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
         m->context = host->context;
     }
     m->in_double = mu_surface_make_d(&p.definition, (char *)m + head);
+    p.definition.compensation_tables = mu_surface_tables_d(m->in_double);
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
     m->parsed.definition.histogram = NULL; /* the host's */
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
@@ -122,10 +125,12 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
                     ? (uint32_t)MUSURF_NEEDS_FOOTPRINT
                     : 0);
     m->bytes = (uint32_t)bytes;
+    const mu_albedo_set *tables = p.definition.compensation_tables; /* one for both precisions */
     m->table_bytes = (uint32_t)(in_float ? mu_surface_table_bytes_f(m->in_float) : 0);
+    if (tables) m->table_bytes += (uint32_t)(mu_surface_table_bytes_d(m->in_double));
     const size_t plain = in_float ? offsetof(mu_closure_f, footprint) : offsetof(mu_closure_d, footprint),
                  whole = in_float ? sizeof(mu_closure_f) : sizeof(mu_closure_d);
-    m->closure_bytes = (uint32_t)(offsetof(bound, closure) + (p.footprint_from ? whole : plain));
+    m->closure_bytes = (uint32_t)(offsetof(bound, closure) + (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
     *out = m;
     return MUSURF_OK;

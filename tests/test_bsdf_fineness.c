@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * test_bsdf_fineness.c: how fine the tables of compensation are is up to the definition: cells and panels of its own, refused
- * out of range, 36 and 4 if nothing is said.
+ * test_bsdf_fineness.c: how fine the tables of compensation are is up to the definition: an error that they keep, refused out of
+ * range; and one set of tables serves both precisions.
  */
+#include "core/bsdf/albedo.h"
 #include "tests/bsdf_fixture.h"
 
 #include <stdlib.h>
@@ -27,66 +28,71 @@ static void make(surface *b, const mu_definition *d) {
     b->made = mu_surface_make_f(d, b->memory);
 }
 
-/* Bilinear interpolation at E's known value, which lies amid a cell where their count is odd: its error is of second order in
- * the cell, a ninth for thrice the cells; a third is asked, for the coarsest are not there yet. From 1 (no table) three such
- * steps would leave 1/729 < 2e-3; and it is not 0, as it is at a node. Tables grow as (n + 1)² + n² floats, to a line of 64. */
+/* What the tables say of E is as near to the quadrature as was asked, at views they were not made from; and coarser tables are
+ * smaller. Halving stops where a value midway is within half of the error along either axis, and 1e-3 is the quadrature's. */
 static void tables_are_as_fine_as_asked(void **state) {
     (void)state;
-    mu_definition d = compensated();
-    const size_t usual = mu_surface_bytes_f(&d);
-    const int sizes[] = {3, 9, 27}, nodes = d.compensation_cells + 1;
-    double before = 1;
-    assert_true(d.compensation_cells == 36 && d.compensation_panels == 4);
+    const double errors[] = {0.1, 0.02, 0.002};
+    size_t before = 0;
     for (int i = 0; i < 3; i++) {
-        surface b;
-        float average;
-        const float up[3] = {0, 0, 1};
-        d.compensation_cells = sizes[i];
+        mu_definition d = bsdf_definition(MU_GGX, 0.6, 2, 1, 2, 0, 1), single = d;
+        surface b, plain;
+        d.multiple = MU_COMPENSATED, d.compensation_error = errors[i];
         make(&b, &d);
-        const double error = fabs((double)mu_albedo_f(b.made, up, &average) - (1 - log(2)));
-        const int n = sizes[i] + 1,
-                  values = nodes * nodes + (nodes - 1) * (nodes - 1) - n * n - sizes[i] * sizes[i];
-        assert_true(error < before / 3);
-        assert_true(fabs((double)usual - (double)mu_surface_bytes_f(&d) - 4.0 * values) < 64);
-        before = error;
+        make(&plain, &single);
+        assert_true(mu_surface_tables_unsure_f(b.made) == 0);
+        for (int k = 0; k < 40; k++) {
+            double wo[3];
+            float average;
+            mu_closure_f c;
+            bsdf_direction(pow((k + 0.5) / 40, 3), 2.4 * k, wo);
+            const float w[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
+            assert_true(mu_bind_f(plain.made, w, NULL, &c));
+            const double E = (double)albedo_integral_f(&c, 1, 1e-5);
+            assert_true(fabs((double)mu_albedo_f(b.made, w, &average) - E) < errors[i] + 1e-3);
+        }
+        assert_true(mu_surface_table_bytes_f(b.made) > before);
+        before = mu_surface_table_bytes_f(b.made);
         free(b.memory);
+        free(plain.memory);
     }
-    assert_true(before < 2e-3 && before > 1e-6);
 }
 
-/* One panel misses an edge that 4 see (bench_albedo: by 0.03 at the worst view). */
-static void panels_are_those_asked_for(void **state) {
+/* Tables of one precision serve the other: the same answers, and no second copy. */
+static void tables_are_shared(void **state) {
     (void)state;
     mu_definition d = compensated();
-    const double wo[3] = {0.6, 0, 0.8};
-    double seen[2];
-    for (int i = 0; i < 2; i++) {
-        surface b;
-        float average;
-        const float w[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
-        d.compensation_cells = 36, d.compensation_panels = i ? 4 : 1;
-        make(&b, &d);
-        seen[i] = (double)mu_albedo_f(b.made, w, &average);
-        free(b.memory);
-    }
-    assert_true(seen[0] != seen[1] && fabs(seen[0] - seen[1]) < 0.05);
+    surface b;
+    float of_f;
+    double of_d;
+    make(&b, &d);
+    d.compensation_tables = mu_surface_tables_f(b.made);
+    assert_non_null(d.compensation_tables);
+    assert_true(mu_surface_bytes_d(&d) < 4096);
+    void *memory = aligned_alloc(64, (mu_surface_bytes_d(&d) + 63) / 64 * 64);
+    const mu_surface_d *other = mu_surface_make_d(&d, memory);
+    const float w[3] = {0.6f, 0, 0.8f};
+    const double v[3] = {(double)w[0], 0, (double)w[2]};
+    assert_true((double)mu_albedo_f(b.made, w, &of_f) == mu_albedo_d(other, v, &of_d));
+    free(memory);
+    free(b.memory);
 }
 
 static void wrong_numbers_are_refused(void **state) {
     (void)state;
     mu_definition d = compensated();
     mu_complaint why;
-    const int wrong[][2] = {{1, 4}, {257, 4}, {36, 0}, {36, 65}};
-    for (int i = 0; i < 4; i++) {
-        d.compensation_cells = wrong[i][0], d.compensation_panels = wrong[i][1];
+    const double wrong[] = {0, 0.6, NAN};
+    for (int i = 0; i < 3; i++) {
+        d.compensation_error = wrong[i];
         assert_false(mu_definition_check(&d, &why));
-        assert_string_equal(why.field, i < 2 ? "compensation_cells" : "compensation_panels");
+        assert_string_equal(why.field, "compensation_error");
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_as_fine_as_asked),
-                                       cmocka_unit_test(panels_are_those_asked_for),
+                                       cmocka_unit_test(tables_are_shared),
                                        cmocka_unit_test(wrong_numbers_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,7 @@
  * nothing where it is off.
  *
  * Random comparisons are Z-tests at the family's level (significance.h). A furnace holds compensation to 1 % and 4
- * standard errors: 1 % is what the tables were made for (measured at 400 views of each: at most 1.0 %).
+ * standard errors: 1 % is what the tables were made for.
  */
 #include "tests/bsdf_fixture.h"
 #include "tests/moments.h"
@@ -124,8 +124,7 @@ static void table_knows_a_closed_form(void **state) {
     free(b.memory);
 }
 
-/* Glass: both sides, all of it comes out again on one side or the other. Compensated within 5 %: its tables do not follow
- * the edge of total reflection on a skewed surface (measured: 4 % at the worst view for GGX). */
+/* Glass: both sides, all of it comes out again on one side or the other. */
 static void glass_keeps_all_light(void **state) {
     (void)state;
     uniform u = {23};
@@ -142,7 +141,7 @@ static void glass_keeps_all_light(void **state) {
             for (int i = 0; i < 3; i++) wo[i] *= below ? -1 : 1;
             view(&b, wo);
             furnace(&b, &u, 4000, &energy);
-            holds(&energy, 1, walks ? 1e-4 : 0.05);
+            holds(&energy, 1, walks ? 1e-4 : 0.01);
         }
         free(b.memory);
     }
@@ -320,7 +319,7 @@ static void compensated_sampler_has_its_pdf(void **state) {
 static void off_is_off(void **state) {
     (void)state;
     assert_int_equal(sizeof(mu_closure_f),
-                     offsetof(mu_closure_f, footprint) + sizeof(double[6])); /* no more */
+                     offsetof(mu_closure_f, lobe) + sizeof(mu_lobe)); /* no more; the plugin leaves the end off */
     const mu_definition off = definition_of(1, 1, MU_SINGLE), walks = definition_of(1, 1, MU_RANDOM_WALK);
     assert_true(mu_surface_bytes_f(&off) < mu_surface_bytes_f(&walks));
     mu_definition d = definition_of(1, 1, MU_COMPENSATED);

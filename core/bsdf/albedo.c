@@ -1,114 +1,136 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* albedo.c: makes the tables of albedo.h, from the very surface that they complete, and draws from their lobe. */
+/*
+ * albedo.c: makes the tables of albedo.h, from the very surface that they complete, as fine as the definition asks: a
+ * patch is halved along an axis until the values midway between its nodes differ from what its nodes say by no more than
+ * half of what E may be off, either axis adding its part. A kink halves with the cells, all else quarters; what is midway
+ * between nodes is computed to be compared, so that every cell of the finished patch was tested. Where halving has to end
+ * before (ALBEDO_HALVINGS, or memory), `unsure` says by how much.
+ */
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
 #include "core/bsdf/singular.h"
 
 #if MU_REAL_BITS == 24
 
-/* Places per side and cell at which the lobe is integrated, and walks that tell where light leaves. */
-enum { WITHIN = 4, WALKS = 2048 };
+/* Walks that tell where light leaves; nodes along a side of a patch at most. */
+enum { WALKS = 2048, SIDE = (1 << ALBEDO_HALVINGS) + 1 };
 static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
 static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
-void mu_albedo_direction(const mu_albedo *t, float a, float b, float w[3]) {
-    const float half = (float)t->cells / 2, x = a / half - 1, y = b / half - 1;
-    const float p[2] = {(x + y) / 2, (x - y) / 2}, s = fminf(fabsf(p[0]) + fabsf(p[1]), 1);
-    const float ln_z = t->power * log1pf(-s), z = fmaxf(expf(ln_z), t->horizon);
-    const float slope = s > 0 ? -expm1f(fmaxf(ln_z, -100)) / s : t->power;
-    const float q[2] = {p[0] * slope, p[1] * slope};
-    w[0] = t->from[0] * q[0] + t->from[1] * q[1];
-    w[1] = t->from[2] * q[0] + t->from[3] * q[1];
-    w[2] = z;
-    const float length = hypotf(hypotf(w[0], w[1]), w[2]);
-    for (int k = 0; k < 3; k++) w[k] /= length;
+/* One patch while it grows. */
+typedef struct patch_maker {
+    const albedo_source *source;
+    const mu_albedo *table;
+    double core;
+    float turn;          /* +1; -1 from below */
+    int quadrant, column, row;
+    int log[2];          /* along u, S */
+    float value[SIDE][SIDE]; /* [u][S] */
+    float midway[SIDE][SIDE];
+} patch_maker;
+
+static int bind_source(const albedo_source *s, const float w[3], closure *c) {
+    if (!MU(mu_bind)(s->surface, w, s->transform, c)) return 0;
+    if (s->blur > 0) MU(mu_blur)(c, s->blur);
+    return 1;
 }
 
-void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *s, float u0, float u1, float w[3]) {
-    const int cells = t->cells;
-    int low = 0, high = cells * cells - 1;
-    while (low < high) { /* the first cell whose sum is above u0 */
-        const int middle = (low + high) / 2;
-        if (s->cumulative[middle] > u0) {
-            high = middle;
-        } else {
-            low = middle + 1;
+/* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
+static double core_of(const albedo_source *s, const closure *c) {
+    const int is_gtr = s->definition->ndf == MU_GTR && c->kernel->plans[PLAN_GENERAL] == s->surface->kernel->plans[PLAN_GENERAL];
+    return is_gtr ? fmin(1, (double)s->surface->alpha / s->surface->unit) : 1;
+}
+
+/* 1 - E at u and S of the patch, from 0 to 1. */
+static float evaluate(const patch_maker *m, double u, double s) {
+    float w[3];
+    closure c;
+    mu_albedo_direction(m->table, m->quadrant, (float)((m->column + u) / m->table->columns),
+                        (float)albedo_s(m->table, (m->row + s) / ALBEDO_ROWS), w);
+    for (int k = 0; k < 3; k++) w[k] *= m->turn;
+    if (!bind_source(m->source, w, &c)) return 1;
+    const double allowed = fmin(m->source->error / 16, 1e-3);
+    return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed), least);
+}
+
+/* The values midway along an axis, and the most that they are off the mean of their neighbours. */
+static float look_midway(patch_maker *m, int axis) {
+    const int u_cells = 1 << m->log[0], s_cells = 1 << m->log[1];
+    float worst = 0;
+    for (int j = 0; j < u_cells + (axis == 1); j++)
+        for (int i = 0; i < s_cells + (axis == 0); i++) {
+            const float mean = (m->value[j][i] + (axis ? m->value[j][i + 1] : m->value[j + 1][i])) / 2;
+            m->midway[j][i] = evaluate(m, (j + (axis ? 0 : 0.5)) / u_cells, (i + (axis ? 0.5 : 0)) / s_cells);
+            worst = fmaxf(worst, fabsf(m->midway[j][i] - mean));
         }
-    }
-    const float before = low ? s->cumulative[low - 1] : 0,
-                within = (u0 - before) / (s->cumulative[low] - before);
-    mu_albedo_direction(t, (float)(low / cells) + fminf(within, 1), (float)(low % cells) + u1, w);
+    return worst;
 }
 
-/* L from V = s M^-1, s the slope unit: what is rougher than 1 along an axis is bounded. */
-static void lay(const surface *s, const mu_definition *d, mu_albedo *t) {
-    double largest = 0, m[4];
-    for (int i = 0; i < 4; i++) largest = fmax(largest, fabs(d->transform[i]));
-    for (int i = 0; i < 4; i++) m[i] = d->transform[i] / largest;
-    const double adjoint[4] = {m[3], -m[1], -m[2], m[0]};
-    const singular v = singular_of(adjoint);
-    const double scale = s->unit / (fabs(product_difference(m[0], m[3], m[1], m[2])) * largest);
-    const double wide = fmin(fmax(v.large * scale, smallest), 1),
-                 narrow = fmin(fmax(fabs(v.small) * scale, smallest), 1);
-    const double other = copysign(narrow / wide, v.small);
-    double to[4], from[4];
-    singular_matrix(&v, 1, other, to, from);
-    for (int i = 0; i < 4; i++) t->to[i] = (float)to[i], t->from[i] = (float)from[i];
-    t->det = (float)fabs(other);
-    t->power = (float)fmax(log(wide) / log(0.45), 3);
-    t->horizon = (float)(1e-7 * wide);
-}
-
-static void fill_lost(const surface *s, const mu_definition *d, const mu_albedo *t, float side,
-                      mu_albedo_side *out) {
-    /* leaves what is level and isotropic before M as it is */
-    const int half_turn = s->tilt[0] == 0 && s->tilt[1] == 0 && !(s->general->traits & ANISOTROPIC);
-    const int nodes = t->cells + 1, count = nodes * nodes;
-    for (int i = 0; i < count; i++) {
-        float w[3];
-        if (half_turn && i > count / 2) {
-            out->lost[i] = out->lost[count - 1 - i];
-            continue;
+static void halve(patch_maker *m, int axis) {
+    const int u_cells = 1 << m->log[0], s_cells = 1 << m->log[1];
+    for (int j = u_cells; j >= 0; j--)
+        for (int i = s_cells; i >= 0; i--) {
+            const int to_j = axis ? j : 2 * j, to_i = axis ? 2 * i : i;
+            m->value[to_j][to_i] = m->value[j][i];
+            if (axis && i < s_cells) m->value[to_j][to_i + 1] = m->midway[j][i];
+            if (!axis && j < u_cells) m->value[to_j + 1][to_i] = m->midway[j][i];
         }
-        mu_albedo_direction(t, (float)(i / nodes), (float)(i % nodes), w);
-        for (int k = 0; k < 3; k++) w[k] *= side;
-        out->lost[i] = fmaxf(1 - MU(albedo_integral)(s, d, w), least);
-    }
+    m->log[axis]++;
 }
 
-/* The lobe's shares by cell, and its average: of what is interpolated, so that no light is lost or made. */
-static void fill_lobe(const mu_albedo *t, mu_albedo_side *out) {
-    const int cells = t->cells, count = cells * cells;
-    double total = 0, cosines = 0;
-    for (int cell = 0; cell < count; cell++) {
-        double sum = 0;
-        for (int i = 0; i < WITHIN * WITHIN; i++) {
-            float w[3];
-            mu_albedo_direction(t, (float)(cell / cells) + ((float)(i / WITHIN) + 0.5f) / WITHIN,
-                                (float)(cell % cells) + ((float)(i % WITHIN) + 0.5f) / WITHIN, w);
-            const albedo_place at = albedo_locate(t, w);
-            const double solid = (double)w[2] / (double)at.stretch;
-            sum += (double)albedo_lost(t, out, at) * solid;
-            cosines += solid;
-        }
-        out->cumulative[cell] = (float)sum;
-        total += sum;
+/* Halves until both axes are near enough; returns what is left. */
+static float grow(patch_maker *m, size_t most) {
+    const float wanted = (float)m->source->error / 2;
+    const int isotropic = m->table->columns == 1;
+    m->log[0] = isotropic ? 0 : 1, m->log[1] = 1;
+    for (int j = 0; j <= 1 << m->log[0]; j++)
+        for (int i = 0; i <= 2; i++)
+            m->value[j][i] = isotropic && j ? m->value[0][i] : evaluate(m, j / 2.0, i / 2.0);
+    float left[2] = {0, 0};
+    int done[2] = {isotropic, 0};
+    for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
+        if (done[axis]) continue;
+        left[axis] = look_midway(m, axis);
+        done[axis] = 1;
+        if (left[axis] <= wanted) continue;
+        const size_t cells = (size_t)1 << (m->log[0] + m->log[1]);
+        if (m->log[axis] >= m->source->halvings || 2 * (2 * cells + (1u << m->log[0]) + (2u << m->log[1])) > most) continue;
+        halve(m, axis);
+        done[axis] = 0;
+        if (!isotropic && left[axis] > 4 * wanted) done[!axis] = 0; /* new rows have to be seen along the other axis */
+        left[axis] /= 2;
     }
-    out->average = (float)(total / cosines);
-    double so_far = 0;
-    for (int cell = 0; cell < count; cell++) {
-        so_far += (double)out->cumulative[cell] / total;
-        out->cumulative[cell] = (float)so_far;
+    return fmaxf(left[0], left[1]) > wanted ? left[0] + left[1] : 0;
+}
+
+static size_t fill_side(const albedo_source *source, const mu_albedo *t, double core, float turn, mu_albedo_side *out,
+                        float *values, size_t most) {
+    patch_maker m = {.source = source, .table = t, .core = core, .turn = turn};
+    const int patches = t->quadrants * t->columns * ALBEDO_ROWS;
+    size_t nodes = 0, cells = 0;
+    out->unsure = 0;
+    for (int k = 0; k < patches; k++) {
+        m.row = k % ALBEDO_ROWS, m.column = k / ALBEDO_ROWS % t->columns, m.quadrant = k / ALBEDO_ROWS / t->columns;
+        /* what is left, but for the least of those to come */
+        const size_t used = nodes + cells, kept = (size_t)(patches - 1 - k) * 13;
+        out->unsure = fmaxf(out->unsure, grow(&m, most > used + kept ? most - used - kept : 0));
+        const int across = 1 << m.log[0], up = 1 << m.log[1];
+        out->patch[k] = (albedo_patch){(uint32_t)nodes, (uint32_t)cells, (uint8_t)m.log[0], (uint8_t)m.log[1]};
+        for (int j = 0; j <= across; j++)
+            for (int i = 0; i <= up; i++) values[nodes++] = m.value[j][i];
+        cells += (size_t)(across * up);
     }
-    out->cumulative[count - 1] = 1;
+    out->lost = values, out->cells = (uint32_t)cells;
+    mu_albedo_fill_lobe(t, out, values + nodes);
+    return nodes + cells;
 }
 
 /* Of what meets two facets or more and leaves, the share that leaves on the upper side, under uniform light from above:
  * walks from cosine-distributed directions. */
-static double share_above(const surface *s) {
+static double share_above(const albedo_source *source) {
     multiple with = {0};
-    MU(multiple_average)(s, with.average);
+    MU(multiple_average)(source->surface, with.average);
     double above = 0, all = 0;
     for (int i = 0; i < WALKS; i++) {
         const float u0 = ((float)i + 0.5f) / WALKS, u1 = (float)fmod(i * 0.61803398874989485, 1);
@@ -116,7 +138,7 @@ static double share_above(const surface *s) {
         const float wo[3] = {sine * cosf(phi), sine * sinf(phi), sqrtf(1 - u0)}, u[3] = {u0, u1, 0.5f};
         closure c;
         walk_end end;
-        if (!MU(mu_bind)(s, wo, NULL, &c)) continue;
+        if (!bind_source(source, wo, &c)) continue;
         MU(walk_trace)(c.kernel, &c, &with, u, &end);
         if (end.bounces < 2 || !(end.i[2] > 0)) continue;
         all++;
@@ -125,40 +147,65 @@ static double share_above(const surface *s) {
     return all > 0 ? above / all : 0.5;
 }
 
-/* What the tables are made of: in float's range, where tables do not change any more with the roughness. */
-static mu_definition reduced(const mu_definition *d) {
-    mu_definition single = *d;
-    single.multiple = MU_SINGLE;
-    single.sampler = MU_SAMPLE_VISIBLE;
-    if (!d->transmission) single.fresnel = MU_FRESNEL_NONE;
-    return single;
+/* L = diag(a, b) R from V: turned to the axes of M, and what is rougher than 1 along one is bounded. */
+static void lay(const closure *c, mu_albedo *t) {
+    const map *m = &c->map;
+    const double z = (double)m->view_z, rows[4] = {(double)m->view[0] / z, (double)m->view[1] / z,
+                                                   (double)m->view[2] / z, (double)m->view[3] / z};
+    const singular v = singular_of(rows);
+    const double a = fmin(fmax(v.large, smallest), 1), b = fmin(fmax(fabs(v.small), smallest), 1);
+    const double turn = (v.sum - v.difference) / 2, cosine = cos(turn), sine = sin(turn);
+    const double to[4] = {a * cosine, -a * sine, b * sine, b * cosine},
+                 from[4] = {cosine / a, sine / b, -sine / a, cosine / b};
+    for (int i = 0; i < 4; i++) t->to[i] = (float)to[i], t->from[i] = (float)from[i];
+    t->det = (float)(a * b), t->along = (float)sqrt(fmax(fabs(v.small), smallest * v.large) / v.large), t->k = (float)(b / a) / t->along;
+    const int level = m->tilt[0] == 0 && m->tilt[1] == 0 && !(c->kernel->traits & ANISOTROPIC);
+    t->quadrants = level ? 1 : 4;
+    t->columns = level && v.large - fabs(v.small) <= 1e-6 * v.large ? 1 : ALBEDO_COLUMNS;
 }
 
-size_t mu_albedo_scratch(const mu_definition *d) {
-    const mu_definition single = reduced(d);
-    return MU(mu_surface_bytes)(&single);
+/* n by which 8 steps of S say E best, at two azimuths. */
+static int choose_roots(const albedo_source *source, mu_albedo *t, double core) {
+    enum { MOST = 4, STEPS = 16, AZIMUTHS = 2 };
+    double least_error = INFINITY;
+    int best = 0;
+    for (t->roots = 0; t->roots < MOST; t->roots++) {
+        patch_maker m = {.source = source, .table = t, .core = core, .turn = 1};
+        double error = 0;
+        for (int k = 0; k < (t->columns == 1 ? 1 : AZIMUTHS); k++) {
+            float lost[STEPS + 1];
+            for (int i = 0; i <= STEPS; i++)
+                lost[i] = evaluate(&m, t->columns * (0.3 + 0.4 * k), (double)i / STEPS * ALBEDO_ROWS);
+            for (int i = 1; i < STEPS; i += 2)
+                error += pow(fabs((double)lost[i] - ((double)lost[i - 1] + (double)lost[i + 1]) / 2), 2);
+        }
+        if (error < least_error) least_error = error, best = t->roots;
+    }
+    return best;
 }
 
-void mu_albedo_make(const mu_definition *d, mu_albedo *t, void *scratch) {
-    const mu_definition single = reduced(d);
-    const surface *s = MU(mu_surface_make)(&single, scratch);
-    lay(s, d, t);
-    t->cells = d->compensation_cells;
-    const int sides = d->transmission ? 2 : 1, nodes = t->cells + 1;
+size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, size_t most) {
+    const float up[3] = {0, 0, 1};
+    closure c;
+    bind_source(source, up, &c);
+    lay(&c, t);
+    const double core = core_of(source, &c);
+    t->roots = choose_roots(source, t, core);
+    const int sides = source->surface->transmission ? 2 : 1;
+    size_t used = 0;
+    t->side[1].cells = 0;
     for (int i = 0; i < sides; i++) {
-        t->side[i].lost = t->values + (size_t)i * albedo_side_values(t->cells);
-        t->side[i].cumulative = t->side[i].lost + nodes * nodes;
-        fill_lost(s, d, t, i ? -1.0f : 1.0f, &t->side[i]);
-        fill_lobe(t, &t->side[i]);
+        used += fill_side(source, t, core, i ? -1.0f : 1.0f, &t->side[i], values + used, (most - used) / (size_t)(sides - i));
         t->side[i].passes = 0;
     }
-    if (!d->transmission) return;
+    if (sides == 1) return used;
     /* passes average is the same from both sides but for eta², or the surface were not reciprocal */
-    const double eta2 = d->dielectric * d->dielectric, above = (double)t->side[0].average,
-                 below = (double)t->side[1].average * eta2;
-    const double passes = fmin((1 - share_above(s)) * above, fmin(above, below));
+    const double eta2 = source->definition->dielectric * source->definition->dielectric,
+                 above = (double)t->side[0].average, below = (double)t->side[1].average * eta2;
+    const double passes = fmin((1 - share_above(source)) * above, fmin(above, below));
     t->side[0].passes = (float)(passes / above);
     t->side[1].passes = (float)(passes / below);
+    return used;
 }
 
 #endif

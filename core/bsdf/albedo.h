@@ -4,15 +4,19 @@
  * albedo.h: tables of what single scattering loses, 1 - E(w), E the directional albedo for F = 1 (or of both sides of a
  * surface that transmits): made when a surface is, by albedo.c; float whatever the precision of shading.
  *
- * E of a transformed microsurface depends on the azimuth, and most where the direction is as far from the horizon as the
- * slopes are, so tables are laid over the hemisphere of L w: L is M^-1 up to its scale, its larger singular value 1 (of what
- * is rougher than 1 along an axis, that is bounded by 1: such a surface changes at every angle). The hemisphere is the
- * octahedron's upper half, turned into the square [-1,1]²: with |.|_1 its norm, z = (L w).z / |L w|_1 and s = 1 - z^(1/n),
- *     p = s / (1 - z) (L w).xy / |L w|_1,     (a, b) = (p.x + p.y, p.x - p.y),
- * where n >= 3 brings the directions as far from the horizon as the slopes are to about half of the way (and since E has
- * an infinite slope at the horizon itself). In between by bilinear interpolation; on the square's
- * diagonals, where the octahedron's edges are, by triangles on either side. Solid angle by
- *     da db = 2 |det L| s z^(1/n - 1) / (|L w|_1^3 (1 - z) n) dw.
+ * E of a transformed microsurface is smooth in the slopes' own units, which is where tables are laid: with V = s M^-1, s the
+ * slope unit, L is V without the rotation that comes last, its singular values A >= B made a, b, at most 1 (of what is rougher
+ * than 1 along an axis: such a surface changes at every angle). With (x, y) = L w.xy and r its length,
+ *     S = 1 - (1 - (r / (r + w.z))²)^(1/2^n),     u = |y| / (k |x| + |y|),     k = b/a / sqrt(B/A),
+ * and the quadrant of (x, y). S is 1/4 (n = 0) where a direction is as far from the horizon as the slopes are, equal in area
+ * around the normal, and 1 at the horizon, where E of a rough surface turns to 1 over decades of w.z: n = 0, 1, 2 the rougher
+ * it is. k has u see both the axes of M and the azimuths of the microsurface before M. Solid angle by
+ *     du dS = 2^(1-n) (1 - S)^(1-2^n) a b ((1-u)² + k² u²) / (k (r + w.z)³) dw.
+ * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and sqrt(S) takes the place of S in
+ * interpolation; cells are drawn from uniformly in S nevertheless.
+ * The square [0, 1]² is cut into patches, and each of them into as many cells as its E asks for: halved along either axis
+ * until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
+ * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic has no u.
  */
 #ifndef MU_ALBEDO_H
 #define MU_ALBEDO_H
@@ -22,80 +26,106 @@
 
 #include "core/bsdf/musurf.h"
 
+/* Patches along S, and along u at most; halvings of a patch at most. */
+enum { ALBEDO_ROWS = 4, ALBEDO_COLUMNS = 2, ALBEDO_PATCHES = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS, ALBEDO_HALVINGS = 6 };
+
+typedef struct albedo_patch {
+    uint32_t node, cell; /* its first */
+    uint8_t log_u, log_s;
+} albedo_patch;
+
 typedef struct mu_albedo_side {
-    float *lost;       /* 1 - E, above 0: (cells + 1)² values */
-    float *cumulative; /* of the lobe (1 - E) cos, by cells: cells² values */
-    float average;     /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
-    float passes;      /* of light that is scattered on: the share that leaves on the other side */
+    const float *lost;       /* 1 - E, above 0, patch by patch, u by u */
+    const float *cumulative; /* of the lobe (1 - E) cos, by cells */
+    uint32_t cells;
+    float average; /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
+    float passes;  /* of light that is scattered on: the share that leaves on the other side */
+    float unsure;  /* the most that a value was off where halving ended before it was near enough; else 0 */
+    albedo_patch patch[ALBEDO_PATCHES];
 } mu_albedo_side;
 
 typedef struct mu_albedo {
-    float to[4], from[4], det; /* L, its inverse, |det L| */
-    float power, horizon;      /* n; the least z */
-    int cells;                 /* along a side of the square */
-    mu_albedo_side side[2];    /* above; below too if the surface transmits */
-    float values[];            /* theirs */
+    float to[4], from[4], det, k, along; /* L, its inverse, |det L|; sqrt(B/A) */
+    int roots;                           /* n */
+    int quadrants, columns;       /* 1 or 4; 1 or ALBEDO_COLUMNS */
+    mu_albedo_side side[2];       /* above; below too if the surface transmits */
 } mu_albedo;
 
-static inline size_t albedo_side_values(int cells) {
-    const size_t n = (size_t)cells;
-    return (n + 1) * (n + 1) + n * n;
-}
-
-static inline size_t albedo_bytes(const mu_definition *d) {
-    return sizeof(mu_albedo) +
-           (d->transmission ? 2 : 1) * albedo_side_values(d->compensation_cells) * sizeof(float);
-}
-
-/* A direction's place in the square, in cells, and da db / dw there. */
+/* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. */
 typedef struct albedo_place {
-    float a, b, stretch;
+    int patch;
+    float u, s, stretch;
 } albedo_place;
+
+static inline float albedo_row(const mu_albedo *t, float s) {
+    return t->quadrants == 1 ? s : sqrtf(s);
+}
+/* And back. */
+static inline double albedo_s(const mu_albedo *t, double row) {
+    return t->quadrants == 1 ? row : row * row;
+}
 
 static inline albedo_place albedo_locate(const mu_albedo *t, const float w[3]) {
     const float x = t->to[0] * w[0] + t->to[1] * w[1], y = t->to[2] * w[0] + t->to[3] * w[1];
-    const float flat = fabsf(x) + fabsf(y), norm = flat + w[2], z = w[2] / norm, rest = flat / norm;
-    const float s = -expm1f((z < 0.5f ? logf(z) : log1pf(-rest)) / t->power), half = (float)t->cells / 2;
-    const float slope = rest > 0 ? s / rest : 1 / t->power, to = slope / norm;
-    return (albedo_place){half * (1 + to * (x + y)), half * (1 + to * (x - y)),
-                          2 * t->det / t->power * (to / norm) * ((1 - s) / w[2])};
+    const float r = sqrtf(x * x + y * y), n = r + w[2], ax = t->k * fabsf(x), ay = fabsf(y);
+    const float u = ax + ay > 0 ? ay / (ax + ay) : 0.5f, across = t->k * u;
+    const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
+    const float still = w[2] * (n + r) / (n * n); /* 1 - (r / n)² */
+    float rest = still, part = 1;
+    for (int k = 0; k < t->roots; k++) rest = sqrtf(rest), part /= 2;
+    const float row = albedo_row(t, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
+    const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
+    return (albedo_place){(quadrant * t->columns + j) * ALBEDO_ROWS + i, column - (float)j, row - (float)i,
+                          2 * part * (still > 0 ? rest / still : 1e30f) * t->det * ((1 - u) * (1 - u) + across * across) / (t->k * n * n * n)};
 }
 
-static inline int albedo_cell(const mu_albedo *t, float x) {
-    const int i = (int)x;
-    return i < 0 ? 0 : i < t->cells ? i : t->cells - 1;
+static inline int albedo_cell(float *x, int log) {
+    const int n = 1 << log, i = (int)(*x *= (float)n), cell = i < n ? i : n - 1;
+    *x -= (float)cell;
+    return cell;
 }
 
-static inline float albedo_lost(const mu_albedo *t, const mu_albedo_side *s, albedo_place at) {
-    const int j = albedo_cell(t, at.a), k = albedo_cell(t, at.b), nodes = t->cells + 1;
-    const float *row = &s->lost[j * nodes + k], x = at.a - (float)j, y = at.b - (float)k;
-    const float v00 = row[0], v01 = row[1], v10 = row[nodes], v11 = row[nodes + 1];
-    if (j == k)
-        return x > y ? v00 + x * (v10 - v00) + y * (v11 - v10) : v00 + y * (v01 - v00) + x * (v11 - v01);
-    if (j + k == t->cells - 1)
-        return x + y < 1 ? v00 + x * (v10 - v00) + y * (v01 - v00)
-                         : v11 + (1 - x) * (v01 - v11) + (1 - y) * (v10 - v11);
-    const float low = v00 + y * (v01 - v00), high = v10 + y * (v11 - v10);
+static inline float albedo_lost(const mu_albedo_side *side, albedo_place at) {
+    const albedo_patch *p = &side->patch[at.patch];
+    float x = at.u, y = at.s;
+    const int j = albedo_cell(&x, p->log_u), i = albedo_cell(&y, p->log_s), next = (1 << p->log_s) + 1;
+    const float *v = side->lost + p->node + j * next + i;
+    const float low = v[0] + y * (v[1] - v[0]), high = v[next] + y * (v[next + 1] - v[next]);
     return low + x * (high - low);
 }
 
-/* The density of albedo_draw, 1/sr. */
-static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *s, albedo_place at) {
-    const int cell = albedo_cell(t, at.a) * t->cells + albedo_cell(t, at.b);
-    const float share = s->cumulative[cell] - (cell ? s->cumulative[cell - 1] : 0);
-    const float square = (float)(t->cells * t->cells) / 4;
-    return fminf(share * square * at.stretch, 0x1p+126f);
+/* The density of mu_albedo_draw, 1/sr. */
+static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *side, albedo_place at) {
+    const albedo_patch *p = &side->patch[at.patch];
+    float x = at.u, y = at.s;
+    const int j = albedo_cell(&x, p->log_u), i = albedo_cell(&y, p->log_s), cell = (int)p->cell + (j << p->log_s) + i;
+    const float share = side->cumulative[cell] - (cell ? side->cumulative[cell - 1] : 0);
+    const float rows = (float)(ALBEDO_ROWS << p->log_s), row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
+    const float over_height = t->quadrants == 1 ? rows / 4 : rows * rows / (2 * row + 1);
+    return fminf(share * (float)(t->columns << p->log_u) * over_height * at.stretch, 0x1p+126f);
 }
 
-/* The direction at a place of the square [0, cells]². */
-void mu_albedo_direction(const mu_albedo *t, float a, float b, float w[3]);
+/* The direction at u and S of a quadrant. */
+void mu_albedo_direction(const mu_albedo *t, int quadrant, float u, float s, float w[3]);
 /* A direction of the lobe. */
-void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *s, float u0, float u1, float w[3]);
+void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *side, float u0, float u1, float w[3]);
+/* The cells' shares of what is interpolated, and its average (albedo_lobe.c). */
+void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumulative);
 
-/* Scratch memory of mu_albedo_make, and the tables of a definition. */
-size_t mu_albedo_scratch(const mu_definition *d);
-void mu_albedo_make(const mu_definition *d, mu_albedo *out, void *scratch);
-/* E(wo) of the surface of a definition, by its panels (albedo_quadrature.c). */
-float albedo_integral_f(const mu_surface_f *surface, const mu_definition *d, const float wo[3]);
+/* What tables are made of: a surface that scatters singly, at an M of its own or another, blurred or not. */
+typedef struct albedo_source {
+    const mu_surface_f *surface;
+    const mu_definition *definition;
+    const float *transform; /* NULL: the surface's */
+    float blur;
+    double error; /* that E may have */
+    int halvings; /* of a patch along an axis, at most ALBEDO_HALVINGS */
+} albedo_source;
+/* Makes a table in `most` floats; returns how many it took. */
+size_t mu_albedo_make(const albedo_source *source, mu_albedo *out, float *values, size_t most);
+
+/* E(wo) of a closure of single scattering, by panels of azimuth that are halved until they agree to within `allowed`
+ * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units. */
+float albedo_integral_f(const mu_closure_f *c, double core, double allowed);
 
 #endif

@@ -21,6 +21,9 @@
 
 #if MU_REAL_BITS == 24
 
+/* Halvings of a panel of azimuths, at most. */
+enum { DEEPEST = 8 };
+
 /* Gauss-Legendre on [0, 1], 8 nodes (Abramowitz and Stegun, table 25.4). */
 static const double node[8] = {0.01985507175123188, 0.10166676129318664, 0.2372337950418355,
                                0.4082826787521751,  0.5917173212478249,  0.7627662049581645,
@@ -115,30 +118,42 @@ static double azimuth(const ray *l, double core) {
     return sum;
 }
 
-float MU(albedo_integral)(const surface *s, const mu_definition *d, const float wo[3]) {
-    /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
-    const double core = d->ndf == MU_GTR ? fmin(1, (double)s->alpha / s->unit) : 1;
-    const int panels = d->compensation_panels;
-    closure c;
-    if (!MU(mu_bind)(s, wo, NULL, &c)) return 1;
-    const double z = (double)c.map.view_z, v[4] = {(double)c.map.view[0] / z, (double)c.map.view[1] / z,
-                                                   (double)c.map.view[2] / z, (double)c.map.view[3] / z};
-    const double t[2] = {(double)c.map.tilt[0], (double)c.map.tilt[1]}, det = fabs(v[0] * v[3] - v[1] * v[2]);
-    ray l = {.c = &c, .panel = 10.0 / panels, .transmission = s->transmission};
-    l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
-    const double facing = atan2(v[2] * (double)c.wo[0] + v[3] * (double)c.wo[1],
-                                v[0] * (double)c.wo[0] + v[1] * (double)c.wo[1]);
-    const double unlike = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) / (2 * det);
-    /* more where edges are elsewhere, or an axis is 4 times the other */
-    const int around = s->transmission || unlike > 2 || t[0] != 0 || t[1] != 0 ? 2 * panels : panels;
+/* One panel of azimuths by 8 nodes. */
+static double panel(ray *l, const double v[4], double core, double from, double width) {
     double sum = 0;
-    for (int j = 0; j < 8 * around; j++) {
-        const double phi = facing + 2 * PI * ((node[j % 8] + j / 8) / around - 0.25),
-                     u[2] = {cos(phi), sin(phi)};
-        l.along[0] = v[0] * u[0] + v[2] * u[1], l.along[1] = v[1] * u[0] + v[3] * u[1];
-        sum += weight[j % 8] * azimuth(&l, core);
+    for (int j = 0; j < 8; j++) {
+        const double phi = from + width * node[j], u[2] = {cos(phi), sin(phi)};
+        l->along[0] = v[0] * u[0] + v[2] * u[1], l->along[1] = v[1] * u[0] + v[3] * u[1];
+        sum += weight[j] * azimuth(l, core);
     }
-    return (float)fmin(sum * det * 2 * PI / around, 1);
+    return sum * width;
+}
+
+/* Halved until both halves agree with the whole: anisotropy, tilt and total reflection make some azimuths sharp. */
+static double refine(ray *l, const double v[4], double core, double from, double width, double whole,
+                     double allowed, int deeper) {
+    const double half = width / 2, low = panel(l, v, core, from, half),
+                 high = panel(l, v, core, from + half, half);
+    if (fabs(low + high - whole) <= allowed || !deeper) return low + high;
+    return refine(l, v, core, from, half, low, allowed / 2, deeper - 1) +
+           refine(l, v, core, from + half, half, high, allowed / 2, deeper - 1);
+}
+
+float MU(albedo_integral)(const closure *c, double core, double allowed) {
+    if (!(c->wo[2] > 0)) return 1;
+    const double z = (double)c->map.view_z, v[4] = {(double)c->map.view[0] / z, (double)c->map.view[1] / z,
+                                                    (double)c->map.view[2] / z, (double)c->map.view[3] / z};
+    const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]}, det = fabs(v[0] * v[3] - v[1] * v[2]);
+    ray l = {.c = c, .panel = 2.5, .transmission = c->surface->transmission};
+    l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
+    const double facing = atan2(v[2] * (double)c->wo[0] + v[3] * (double)c->wo[1],
+                                v[0] * (double)c->wo[0] + v[1] * (double)c->wo[1]);
+    double sum = 0;
+    for (int half = 0; half < 2; half++) {
+        const double from = facing + PI * (half - 0.5), whole = panel(&l, v, core, from, PI);
+        sum += refine(&l, v, core, from, PI, whole, allowed / (2 * det), DEEPEST);
+    }
+    return (float)fmin(sum * det, 1);
 }
 
 #endif

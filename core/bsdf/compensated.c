@@ -28,30 +28,40 @@ static int below(const closure *c) {
 }
 
 /* How likely it is drawn, from a direction that loses `lost`. */
-static real chance(const multiple *m, real lost) {
-    const real often = lost * (m->repeated[0] + m->repeated[1] + m->repeated[2]);
-    const real once = (1 - lost) * (m->average[0] + m->average[1] + m->average[2]);
+static real chance(const closure *c, real lost) {
+    if (c->surface->transmission) return lost;
+    const real *F = multiple_of(c->surface)->average;
+    const real often = lost * R(c->lobe.repeated[0] + c->lobe.repeated[1] + c->lobe.repeated[2]),
+               once = (1 - lost) * (F[0] + F[1] + F[2]);
     return often > 0 ? often / (often + once) : 0;
 }
 
+void MU(compensated_bind)(closure *c, real blur) {
+    mu_lobe *l = &c->lobe;
+    mu_albedo_set_choose(multiple_of(c->surface)->tables, (float)blur, l);
+    const float w[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]}, E = 1 - l->average[0];
+    l->lost = w[2] > 0 ? lobe_lost(l, below(c), w, &l->density) : 0;
+    for (int k = 0; k < 3; k++) { /* Kulla & Conty 2017, with Hill's second F (2018) */
+        const float F = (float)multiple_of(c->surface)->average[k];
+        l->repeated[k] = c->surface->transmission ? 1 : F * F * E / (1 - F * (1 - E));
+    }
+}
+
 /* i: seen from the side it is on, i.z > 0. */
-static lobe lobe_toward(const closure *c, const multiple *m, const real i[3], int transmitted) {
-    const mu_albedo *t = m->albedo;
-    const int other = below(c) ^ transmitted;
-    const mu_albedo_side *from = &t->side[below(c)], *to = &t->side[other];
-    const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]},
-                i_f[3] = {(float)i[0], (float)i[1], (float)i[2]};
-    const albedo_place at_o = albedo_locate(t, o_f), at_i = albedo_locate(t, i_f);
-    const real lost_o = R(albedo_lost(t, from, at_o)), lost_i = R(albedo_lost(t, to, at_i));
-    const real share = R(transmitted ? from->passes : 1 - from->passes),
-               share_back = R(transmitted ? to->passes : 1 - to->passes);
-    const real transmits = R(c->surface->transmission);
-    lobe l = {.chosen = transmits > 0 ? lost_o : chance(m, lost_o),
-              .back = transmits > 0 ? lost_i : chance(m, lost_i),
-              .pdf = share * R(albedo_density(t, to, at_i)),
-              .reverse = share_back * R(albedo_density(t, from, at_o))};
+static lobe lobe_toward(const closure *c, const real i[3], int transmitted) {
+    const mu_lobe *t = &c->lobe;
+    const int from = below(c), to = from ^ transmitted;
+    const float w[3] = {(float)i[0], (float)i[1], (float)i[2]};
+    float density;
+    const real lost = R(lobe_lost(t, to, w, &density));
+    const real share = R(transmitted ? t->passes[from] : 1 - t->passes[from]),
+               share_back = R(transmitted ? t->passes[to] : 1 - t->passes[to]);
+    lobe l = {.chosen = chance(c, R(t->lost)),
+              .back = chance(c, lost),
+              .pdf = share * R(density),
+              .reverse = share_back * R(t->density)};
     for (int k = 0; k < 3; k++)
-        l.f[k] = share * lost_o * (lost_i / R(to->average)) * R(INV_PI) * m->repeated[k];
+        l.f[k] = share * R(t->lost) * (lost / R(t->average[to])) * R(INV_PI) * R(t->repeated[k]);
     return l;
 }
 
@@ -64,7 +74,7 @@ void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3]
     full->eval(c, wi, out);
     const int transmitted = closure_turn(c, wi, i);
     if (!(i[2] > 0) || (transmitted && !c->surface->transmission)) return;
-    const lobe l = lobe_toward(c, multiple_of(c->surface), i, transmitted);
+    const lobe l = lobe_toward(c, i, transmitted);
     for (int k = 0; k < 3; k++)
         out->f[k] = smaller(out->f[k] + l.f[k] * closure_transport(c, transmitted), REAL_MAX);
     out->pdf = mix(l.chosen, l.pdf, out->pdf);
@@ -73,11 +83,9 @@ void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3]
 
 /* A direction of the smooth lobe, with what single scattering sends there too. */
 static void sample_lobe(const kernel *full, const closure *c, const real u[3], sample *out) {
-    const multiple *m = multiple_of(c->surface);
-    const mu_albedo_side *from = &m->albedo->side[below(c)];
-    const int transmitted = u[2] < R(from->passes);
+    const int transmitted = u[2] < R(c->lobe.passes[below(c)]);
     float w[3];
-    mu_albedo_draw(m->albedo, &m->albedo->side[below(c) ^ transmitted], (float)u[0], (float)u[1], w);
+    lobe_draw(&c->lobe, below(c) ^ transmitted, (float)u[0], (float)u[1], w);
     const real unit = 1 / sqrt(square(R(w[0])) + square(R(w[1])) + square(R(w[2])));
     const real turn = transmitted ? -c->side * unit : c->side * unit;
     for (int k = 0; k < 3; k++) out->wi[k] = turn * R(w[k]), out->wm[k] = k < 2 ? 0 : c->side;
@@ -93,10 +101,7 @@ static void sample_lobe(const kernel *full, const closure *c, const real u[3], s
 
 void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sampler, const real u[3],
                             sample *out) {
-    const multiple *m = multiple_of(c->surface);
-    const float o_f[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]};
-    const real lost = R(albedo_lost(m->albedo, &m->albedo->side[below(c)], albedo_locate(m->albedo, o_f)));
-    const real chosen = c->surface->transmission ? lost : chance(m, lost);
+    const real chosen = chance(c, R(c->lobe.lost));
     real moved[3] = {u[0], u[1], u[2]};
     if (u[2] < chosen) {
         *out = (sample){.rejected = 1, .eta = 1};
@@ -114,7 +119,7 @@ void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sam
     }
     real i[3];
     const int transmitted = closure_turn(c, out->wi, i);
-    const lobe l = lobe_toward(c, m, i, transmitted);
+    const lobe l = lobe_toward(c, i, transmitted);
     const real pdf = larger(mix(chosen, l.pdf, out->pdf), REAL_MIN), single = out->pdf / pdf;
     for (int k = 0; k < 3; k++) {
         const real f = l.f[k] * closure_transport(c, transmitted);

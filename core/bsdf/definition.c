@@ -21,8 +21,7 @@ mu_definition mu_definition_default(void) {
         .k = {4.152, 3.586, 2.869},
         .flake_density = 1e6,
         .flake_cone = 0.02,
-        .compensation_cells = 36,
-        .compensation_panels = 4,
+        .compensation_error = 0.01,
     };
 }
 
@@ -96,11 +95,8 @@ static int tilts_too_much(const mu_definition *d) {
 }
 
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
-    if (d->multiple == MU_COMPENSATED && !(d->compensation_cells >= 2 && d->compensation_cells <= 256))
-        return complain(why, "compensation_cells", d->compensation_cells,
-                        "a table has 2 to 256 cells a side");
-    if (d->multiple == MU_COMPENSATED && !(d->compensation_panels >= 1 && d->compensation_panels <= 64))
-        return complain(why, "compensation_panels", d->compensation_panels, "the azimuth has 1 to 64 panels");
+    if (d->multiple == MU_COMPENSATED && !(d->compensation_error >= 1e-4 && d->compensation_error <= 0.5))
+        return complain(why, "compensation_error", d->compensation_error, "an albedo is off by 0.0001 to 0.5");
     const char *right = NULL;
     if (d->multiple != MU_SINGLE && mu_is_mirror(d) && (d->tilt[0] != 0 || d->tilt[1] != 0)) {
         right = "a tilted mirror scatters singly: what it loses has no table, and no walk of one normal ends";

@@ -129,7 +129,8 @@ struct MU(mu_surface) {
     mu_sampler sampler;
     mu_masking_form masking;
     int transmission;
-    int is_delta; /* the distribution's trait */
+    int is_delta;    /* the distribution's trait */
+    int compensated; /* keeps tables of what it loses: a mirror has none */
     real alpha;
     real uniform_share; /* of the samplers that mix with uniform directions */
     double unit;        /* of slopes */

@@ -6,8 +6,8 @@
 size_t MU(multiple_bytes)(const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return 0;
     const size_t head = padded(sizeof(multiple));
-    return d->multiple == MU_RANDOM_WALK ? head
-                                         : head + padded(albedo_bytes(d)) + padded(mu_albedo_scratch(d));
+    if (d->multiple == MU_RANDOM_WALK || d->compensation_tables) return head;
+    return head + padded(mu_albedo_set_bytes(d));
 }
 
 /* 2 F(mu) mu dmu, the F_avg of Kulla & Conty 2017, by the midpoint rule: 1e-4 and better, kinks at the critical angle included. */
@@ -35,15 +35,10 @@ void MU(multiple_make)(surface *s, const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return;
     char *memory = (char *)s + surface_head_bytes();
     multiple *m = (void *)memory;
-    *m = (multiple){.salt = d->salt, .repeated = {1, 1, 1}};
+    *m = (multiple){.salt = d->salt, .tables = d->compensation_tables};
     MU(multiple_average)(s, m->average);
-    if (d->multiple == MU_RANDOM_WALK) return;
-    mu_albedo *albedo = (void *)(memory + padded(sizeof *m));
-    mu_albedo_make(d, albedo, (char *)albedo + padded(albedo_bytes(d)));
-    m->albedo = albedo;
-    const real E = 1 - R(albedo->side[0].average);
-    for (int k = 0; k < 3 && !d->transmission; k++) { /* Kulla & Conty 2017, with Hill's second F (2018) */
-        const real F = m->average[k];
-        m->repeated[k] = F * F * E / (1 - F * (1 - E));
-    }
+    if (d->multiple == MU_RANDOM_WALK || m->tables) return;
+    mu_albedo_set *tables = (void *)(memory + padded(sizeof *m));
+    mu_albedo_set_make(d, tables);
+    m->tables = tables;
 }

@@ -9,16 +9,15 @@
 
 #include <stdint.h>
 
-#include "core/bsdf/albedo.h"
+#include "core/bsdf/albedo_set.h"
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/padded.h"
 
 typedef struct MU(mu_multiple) {
-    const mu_albedo *albedo; /* of the compensated form */
+    const mu_albedo_set *tables; /* of the compensated form */
     real average
         [3]; /* F averaged over the hemisphere, 2 F(mu) mu dmu; of a surface that transmits: [0] from above,
                                 [1] from below */
-    real repeated[3]; /* what F leaves of light that was reflected twice or more */
     uint32_t salt;
 } multiple;
 
@@ -35,6 +34,8 @@ void MU(multiple_average)(const surface *s, real average[3]);
 size_t MU(multiple_bytes)(const mu_definition *d);
 void MU(multiple_make)(surface *s, const mu_definition *d);
 
+/* Chooses the closure's tables, once its map is settled; blur as of mu_blur. */
+void MU(compensated_bind)(closure *c, real blur);
 void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3], value *out);
 void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sampler, const real u[3],
                             sample *out);

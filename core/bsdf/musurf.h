@@ -90,6 +90,8 @@ typedef enum mu_fresnel_kind {
 struct mu_kernel_f;
 struct mu_kernel_d;
 
+typedef struct mu_albedo_set mu_albedo_set; /* tables of a compensated surface */
+
 /* What a surface is. Doubles whatever the precision of shading. */
 typedef struct mu_definition {
     mu_ndf ndf;
@@ -124,9 +126,11 @@ typedef struct mu_definition {
     uint64_t flake_seed;
     mu_scattering multiple;
     unsigned salt; /* of the random walk's hash: another salt, another noise */
-    /* Of compensation: cells along a side of its tables, 2 ... 256, and panels of the azimuth (8 Gauss nodes each) by which
-     * each of their values is integrated, 1 ... 64. Time to make a surface grows as cells² panels², tables as cells². */
-    int compensation_cells, compensation_panels;
+    /* Of compensation: what a directional albedo of its tables may be off, 1e-4 ... 0.5: they are refined until it is kept. */
+    double compensation_error;
+    /* Tables that were made with another surface of this very definition (mu_surface_tables), of either precision, which
+     * must outlive this one; NULL: made with the surface. */
+    const mu_albedo_set *compensation_tables;
 } mu_definition;
 
 mu_definition mu_definition_default(void);
@@ -223,6 +227,16 @@ int mu_transform_anisotropy(const double transform[4], double alpha, mu_anisotro
  * NULL-terminated. */
 int mu_metal(const char *symbol, double n[3], double k[3]);
 extern const char *const mu_metal_names[];
+
+/* The tables that say what a closure of a compensated surface loses (albedo_set.h), in order to be mixed. */
+typedef struct mu_lobe {
+    const struct mu_albedo *level[4];
+    float share[4], turn[2]; /* to the tables' axes: cosine and sine */
+    float average[2], passes[2];
+    float lost, density; /* of wo: the lobe's own density of it */
+    float repeated[3];   /* what F leaves of light that was reflected twice or more */
+    int count;           /* 0: scatters singly */
+} mu_lobe;
 
 #define MU_REAL       float
 #define MU_SUFFIX(id) id##_f

@@ -30,6 +30,7 @@ typedef struct MU_SUFFIX(mu_closure) {
     int is_delta;      /* a mirror or a pane: eval answers 0 */
     int has_footprint; /* set by mu_footprint; what follows is only touched if the surface is a discrete one */
     double footprint[6];
+    mu_lobe lobe; /* of a compensated surface alone */
 } MU_SUFFIX(mu_closure);
 
 typedef struct MU_SUFFIX(mu_value) {
@@ -64,6 +65,10 @@ typedef struct MU_SUFFIX(mu_pair_values) {
  * move. */
 size_t MU_SUFFIX(mu_surface_bytes)(const mu_definition *definition);
 MU_SUFFIX(mu_surface) * MU_SUFFIX(mu_surface_make)(const mu_definition *definition, void *memory);
+/* The tables of a compensated surface, for another one of the same definition; NULL if it has none. */
+const mu_albedo_set *MU_SUFFIX(mu_surface_tables)(const MU_SUFFIX(mu_surface) * surface);
+/* The most that an albedo in them may be off beyond compensation_error, where refining had to end before: else 0. */
+MU_REAL MU_SUFFIX(mu_surface_tables_unsure)(const MU_SUFFIX(mu_surface) * surface);
 size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
 /* What the definition came down to: "ggx", "gtr table", "mirror", ... */
 const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);

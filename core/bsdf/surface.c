@@ -110,6 +110,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .masking = d->masking,
                    .transmission = d->transmission,
                    .is_delta = (p.kernel->traits & IS_DELTA) != 0,
+                   .compensated = d->multiple == MU_COMPENSATED && !scatters_once(&p, d),
                    .alpha = R(p.definition.alpha),
                    .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
                    .unit = 1,
@@ -124,7 +125,6 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                                                            : eta);
         s->fresnel.b[i] = R(d->k[i]);
     }
-    s->table_bytes = p.kernel->table_bytes(&p.definition) + multiple_bytes(&p, d);
     const size_t before = surface_head_bytes() + multiple_bytes(&p, d);
     s->unit = p.kernel->prepare(&s->base, &p.definition, (char *)memory + before);
     if (mu_is_discrete(d)) {
@@ -134,10 +134,13 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
         s->flakes = mu_flakes_make(d->flake_density, d->flake_cone / s->unit, d->flake_seed);
     }
     if (mu_is_discrete(d) || needs_full(&p.definition)) s->kernel = s->general = p.kernel->plans[PLAN_FULL];
+    s->table_bytes = p.kernel->table_bytes(&p.definition);
     if (!scatters_once(&p, d)) {
         if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
         if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
         MU(multiple_make)(s, d);
+        s->table_bytes += sizeof(multiple);
+        if (s->compensated && !d->compensation_tables) s->table_bytes += multiple_of(s)->tables->bytes;
     }
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
@@ -153,12 +156,18 @@ size_t MU(mu_surface_table_bytes)(const surface *s) {
 }
 real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
     *average = 1;
-    if (s->kernel != s->kernel->plans[PLAN_COMPENSATED]) return 1;
-    const mu_albedo *t = multiple_of(s)->albedo;
+    if (!s->compensated) return 1;
+    const mu_albedo *t = &multiple_of(s)->tables->level[0];
     const mu_albedo_side *side = &t->side[s->transmission && w[2] < 0];
     const float up[3] = {(float)w[0], (float)w[1], (float)w[2]}, down[3] = {-up[0], -up[1], -up[2]};
     *average = 1 - R(side->average);
-    return 1 - R(albedo_lost(t, side, albedo_locate(t, w[2] < 0 ? down : up)));
+    return 1 - R(albedo_lost(side, albedo_locate(t, w[2] < 0 ? down : up)));
+}
+const mu_albedo_set *MU(mu_surface_tables)(const surface *s) {
+    return s->compensated ? multiple_of(s)->tables : NULL;
+}
+real MU(mu_surface_tables_unsure)(const surface *s) {
+    return s->compensated ? R(multiple_of(s)->tables->unsure) : 0;
 }
 const char *MU(mu_surface_name)(const surface *s) {
     return s->name;
@@ -183,6 +192,7 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->sigma = c->lambda = c->least2 = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     if (c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
+    if (s->compensated && !transform) MU(compensated_bind)(c, 0);
     return c->wo[2] > 0;
 }
 
@@ -225,6 +235,7 @@ void MU(mu_blur)(closure *c, real alpha) {
     c->has_footprint = c->is_delta = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
+    if (s->compensated && c->kernel == c->kernel->plans[PLAN_COMPENSATED]) MU(compensated_bind)(c, alpha);
 }
 
 void MU(mu_eval)(const closure *c, const real wi[3], value *out) {

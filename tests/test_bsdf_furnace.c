@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * test_bsdf_furnace.c: compensated multiple scattering where its tables have most to follow, and after blurring.
+ *
+ * The furnace: F = 1, or glass whose reflected and transmitted light (importance) together are all that came; either is held
+ * to 1 % and 4 standard errors of sampled weights.
+ */
+#include "tests/bsdf_fixture.h"
+#include "tests/moments.h"
+
+#include <stdlib.h>
+
+typedef struct scene {
+    mu_definition d;
+    void *memory;
+    mu_surface_f *s;
+    mu_closure_f c;
+} scene;
+
+static void make(scene *b, const mu_definition *d) {
+    mu_complaint why;
+    assert_true(mu_definition_check(d, &why));
+    b->d = *d;
+    b->memory = aligned_alloc(64, (mu_surface_bytes_f(d) + 63) / 64 * 64);
+    b->s = mu_surface_make_f(d, b->memory);
+}
+
+static void view(scene *b, const double w[3]) {
+    const float wo[3] = {(float)w[0], (float)w[1], (float)w[2]};
+    assert_true(mu_bind_f(b->s, wo, NULL, &b->c));
+}
+
+static void sample_once(const scene *b, uniform *u, mu_sample_f *out) {
+    const float v[3] = {uniform_float(u), uniform_float(u), uniform_float(u)};
+    mu_sample_wi_f(&b->c, v, out);
+}
+
+/* Mean energy of n samples: importance, so that eta does not scale it. */
+static void furnace(scene *b, uniform *u, int n, moments *energy) {
+    b->c.importance = 1;
+    for (int i = 0; i < n; i++) {
+        mu_sample_f s;
+        sample_once(b, u, &s);
+        accumulate(energy, s.rejected ? 0 : (double)s.weight[0]);
+    }
+}
+
+static void holds(const moments *m, double truth, double slack) {
+    const double mean = m->sum / m->n, error = sqrt(fmax(m->squares / m->n - mean * mean, 0) / m->n);
+    if (fabs(mean - truth) <= slack + 4 * error) return;
+    print_error("energy %.5f +- %.5f, expected %.5f +- %.5f\n", mean, error, truth, slack);
+    fail();
+}
+
+/* Where E changes fastest: strong anisotropy, a heavy tail under a mirror, a tilt, and glass that is skewed. */
+static void compensation_holds_where_it_is_hard(void **state) {
+    (void)state;
+    static const struct {
+        mu_ndf ndf;
+        double alpha, gamma, map[4], tilt[2];
+        int glass;
+    } hard[] = {{MU_GGX, 0.5, 2, {1, 0, 0, 100}, {0, 0}, 0},    {MU_GGX, 1, 2, {10, 0, 0, 0.1}, {0, 0}, 0},
+                {MU_BECKMANN, 1, 2, {0.3, 0, 0, 30}, {0, 0}, 0}, {MU_STD, 0.7, 1.6, {-1, 0.3, 0.2, 0.6}, {0, 0}, 0},
+                {MU_GGX, 0.3, 2, {1, 0, 0, 1}, {1, 0.5}, 0},    {MU_GGX, 0.5, 2, {1, 2, 0, 1}, {0, 0}, 1},
+                {MU_GTR, 0.3, 1, {1, 0, 0, 1}, {0, 0}, 1}};
+    uniform u = {28};
+    for (size_t k = 0; k < sizeof hard / sizeof hard[0]; k++) {
+        const double *m = hard[k].map;
+        mu_definition d = bsdf_definition(hard[k].ndf, hard[k].alpha, hard[k].gamma, m[0], m[1], m[2], m[3]);
+        d.tilt[0] = hard[k].tilt[0], d.tilt[1] = hard[k].tilt[1];
+        d.multiple = MU_COMPENSATED;
+        if (hard[k].glass) d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
+        scene b;
+        make(&b, &d);
+        for (int v = 0; v < 8 * (1 + hard[k].glass); v++) {
+            double wo[3];
+            moments energy = {0};
+            bsdf_direction((double[]){0.98, 0.75, 0.5, 0.3, 0.12, 0.04, 0.01, 0.001}[v % 8], 1.3 * v, wo);
+            for (int i = 0; i < 3; i++) wo[i] *= v < 8 ? 1 : -1;
+            view(&b, wo);
+            furnace(&b, &u, 10000, &energy);
+            holds(&energy, 1, 0.01);
+        }
+        free(b.memory);
+    }
+}
+
+/* Blurred, what is lost is that of the blurred surface: within 2 %, for its tables are coarser, and a factor of 2 apart. */
+static void compensation_follows_blur(void **state) {
+    (void)state;
+    uniform u = {29};
+    const double blurs[] = {0.1, 0.35, 1, 3};
+    for (int k = 0; k < 12; k++) {
+        static const double maps[][4] = {{1, 0, 0, 1}, {1, 2, 0, 1}, {-1, 0.3, 0.2, 0.6}};
+        const double *m = maps[k % 3];
+        mu_definition d = bsdf_definition((mu_ndf[]){MU_GGX, MU_GTR, MU_BECKMANN}[k / 4], (double[]){0.05, 0.3, 0.6}[k / 4], 0.4,
+                                          m[0], m[1], m[2], m[3]);
+        d.multiple = MU_COMPENSATED;
+        scene b;
+        make(&b, &d);
+        for (int v = 0; v < 4; v++) {
+            double wo[3];
+            moments energy = {0};
+            bsdf_direction((double[]){1, 0.6, 0.2, 0.02}[v], k + v, wo);
+            view(&b, wo);
+            mu_blur_f(&b.c, (float)blurs[k % 4]);
+            furnace(&b, &u, 10000, &energy);
+            holds(&energy, 1, 0.02);
+        }
+        free(b.memory);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(compensation_holds_where_it_is_hard),
+                                       cmocka_unit_test(compensation_follows_blur)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

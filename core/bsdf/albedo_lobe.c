@@ -26,8 +26,7 @@ void mu_albedo_direction(const mu_albedo *t, int quadrant, float u, float s, flo
     w[0] /= length, w[1] /= length, w[2] = 1 / length;
 }
 
-/* The integral of lost cos over u0 ... u1 of a cell of S, and of cos, by Gauss's rule. */
-static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
+static void integrate_panel(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
                       double s1, double sums[2]) {
     for (int i = 0; i < 16; i++) {
         float w[3];
@@ -37,6 +36,16 @@ static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadra
         const double cosines = weight[i / 4] * weight[i % 4] * (u1 - u0) * (s1 - s0) * (double)w[2] / (double)at.stretch;
         sums[0] += cosines * (double)albedo_lost(side, at), sums[1] += cosines;
     }
+}
+
+/* The integral of lost cos over u0 ... u1 of a cell of S, and of cos, by Gauss's rule. A cell at S = 0 is halved toward it: of
+ * a smooth surface that is where most directions are. */
+static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
+                      double s1, double sums[2]) {
+    double high = s1;
+    for (; s0 == 0 && high > 0.25 * (double)t->det; high /= 2)
+        integrate_panel(t, side, quadrant, u0, u1, high / 2, high, sums);
+    integrate_panel(t, side, quadrant, u0, u1, s0, high, sums);
 }
 
 /* Along u a cell at 0 is halved toward it: under a strong anisotropy that is where most azimuths are. */

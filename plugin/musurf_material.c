@@ -130,7 +130,9 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     if (tables) m->table_bytes += (uint32_t)(mu_surface_table_bytes_d(m->in_double));
     const size_t plain = in_float ? offsetof(mu_closure_f, footprint) : offsetof(mu_closure_d, footprint),
                  whole = in_float ? sizeof(mu_closure_f) : sizeof(mu_closure_d);
-    m->closure_bytes = (uint32_t)(offsetof(bound, closure) + (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
+    m->closure_bytes =
+        (uint32_t)(offsetof(bound, closure) +
+                   (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
     *out = m;
     return MUSURF_OK;

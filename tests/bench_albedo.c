@@ -26,15 +26,7 @@
 #include "tests/uniform.h"
 
 #define TURN 6.28318530717958648
-enum {
-    MATERIALS = 24,
-    VIEWS = 24,
-    DRAWS = 1 << 16,
-    POLAR = 300,
-    AROUND = 128,
-    LIGHTS = 64,
-    ROUNDS = 5
-};
+enum { MATERIALS = 24, VIEWS = 24, DRAWS = 1 << 16, POLAR = 300, AROUND = 128, LIGHTS = 64, ROUNDS = 5 };
 
 static const struct {
     const char *name;

@@ -60,10 +60,11 @@ static void compensation_holds_where_it_is_hard(void **state) {
         mu_ndf ndf;
         double alpha, gamma, map[4], tilt[2];
         int glass;
-    } hard[] = {{MU_GGX, 0.5, 2, {1, 0, 0, 100}, {0, 0}, 0},    {MU_GGX, 1, 2, {10, 0, 0, 0.1}, {0, 0}, 0},
-                {MU_BECKMANN, 1, 2, {0.3, 0, 0, 30}, {0, 0}, 0}, {MU_STD, 0.7, 1.6, {-1, 0.3, 0.2, 0.6}, {0, 0}, 0},
-                {MU_GGX, 0.3, 2, {1, 0, 0, 1}, {1, 0.5}, 0},    {MU_GGX, 0.5, 2, {1, 2, 0, 1}, {0, 0}, 1},
-                {MU_GTR, 0.3, 1, {1, 0, 0, 1}, {0, 0}, 1}};
+    } hard[] = {
+        {MU_GGX, 0.5, 2, {1, 0, 0, 100}, {0, 0}, 0},     {MU_GGX, 1, 2, {10, 0, 0, 0.1}, {0, 0}, 0},
+        {MU_BECKMANN, 1, 2, {0.3, 0, 0, 30}, {0, 0}, 0}, {MU_STD, 0.7, 1.6, {-1, 0.3, 0.2, 0.6}, {0, 0}, 0},
+        {MU_GGX, 0.3, 2, {1, 0, 0, 1}, {1, 0.5}, 0},     {MU_GGX, 0.5, 2, {1, 2, 0, 1}, {0, 0}, 1},
+        {MU_GTR, 0.3, 1, {1, 0, 0, 1}, {0, 0}, 1}};
     uniform u = {28};
     for (size_t k = 0; k < sizeof hard / sizeof hard[0]; k++) {
         const double *m = hard[k].map;
@@ -94,8 +95,8 @@ static void compensation_follows_blur(void **state) {
     for (int k = 0; k < 12; k++) {
         static const double maps[][4] = {{1, 0, 0, 1}, {1, 2, 0, 1}, {-1, 0.3, 0.2, 0.6}};
         const double *m = maps[k % 3];
-        mu_definition d = bsdf_definition((mu_ndf[]){MU_GGX, MU_GTR, MU_BECKMANN}[k / 4], (double[]){0.05, 0.3, 0.6}[k / 4], 0.4,
-                                          m[0], m[1], m[2], m[3]);
+        mu_definition d = bsdf_definition((mu_ndf[]){MU_GGX, MU_GTR, MU_BECKMANN}[k / 4],
+                                          (double[]){0.05, 0.3, 0.6}[k / 4], 0.4, m[0], m[1], m[2], m[3]);
         d.multiple = MU_COMPENSATED;
         scene b;
         make(&b, &d);

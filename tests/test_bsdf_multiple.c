@@ -318,8 +318,8 @@ static void compensated_sampler_has_its_pdf(void **state) {
 /* Off, a surface is what it was: no byte more, and the same answers; a walk's pdf and value never leave the range. */
 static void off_is_off(void **state) {
     (void)state;
-    assert_int_equal(sizeof(mu_closure_f),
-                     offsetof(mu_closure_f, lobe) + sizeof(mu_lobe)); /* no more; the plugin leaves the end off */
+    assert_int_equal(sizeof(mu_closure_f), offsetof(mu_closure_f, lobe) +
+                                               sizeof(mu_lobe)); /* no more; the plugin leaves the end off */
     const mu_definition off = definition_of(1, 1, MU_SINGLE), walks = definition_of(1, 1, MU_RANDOM_WALK);
     assert_true(mu_surface_bytes_f(&off) < mu_surface_bytes_f(&walks));
     mu_definition d = definition_of(1, 1, MU_COMPENSATED);

@@ -23,9 +23,9 @@ typedef struct patch_maker {
     const albedo_source *source;
     const mu_albedo *table;
     double core;
-    float turn;          /* +1; -1 from below */
+    float turn; /* +1; -1 from below */
     int quadrant, column, row;
-    int log[2];          /* along u, S */
+    int log[2];              /* along u, S */
     float value[SIDE][SIDE]; /* [u][S] */
     float midway[SIDE][SIDE];
 } patch_maker;
@@ -38,7 +38,8 @@ static int bind_source(const albedo_source *s, const float w[3], closure *c) {
 
 /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
 static double core_of(const albedo_source *s, const closure *c) {
-    const int is_gtr = s->definition->ndf == MU_GTR && c->kernel->plans[PLAN_GENERAL] == s->surface->kernel->plans[PLAN_GENERAL];
+    const int is_gtr = s->definition->ndf == MU_GTR &&
+                       c->kernel->plans[PLAN_GENERAL] == s->surface->kernel->plans[PLAN_GENERAL];
     return is_gtr ? fmin(1, (double)s->surface->alpha / s->surface->unit) : 1;
 }
 
@@ -95,28 +96,33 @@ static float grow(patch_maker *m, size_t most) {
         done[axis] = 1;
         if (left[axis] <= wanted) continue;
         const size_t cells = (size_t)1 << (m->log[0] + m->log[1]);
-        if (m->log[axis] >= m->source->halvings || 2 * (2 * cells + (1u << m->log[0]) + (2u << m->log[1])) > most) continue;
+        if (m->log[axis] >= m->source->halvings ||
+            2 * (2 * cells + (1u << m->log[0]) + (2u << m->log[1])) > most)
+            continue;
         halve(m, axis);
         done[axis] = 0;
-        if (!isotropic && left[axis] > 4 * wanted) done[!axis] = 0; /* new rows have to be seen along the other axis */
+        if (!isotropic && left[axis] > 4 * wanted)
+            done[!axis] = 0; /* new rows have to be seen along the other axis */
         left[axis] /= 2;
     }
     return fmaxf(left[0], left[1]) > wanted ? left[0] + left[1] : 0;
 }
 
-static size_t fill_side(const albedo_source *source, const mu_albedo *t, double core, float turn, mu_albedo_side *out,
-                        float *values, size_t most) {
+static size_t fill_side(const albedo_source *source, const mu_albedo *t, double core, float turn,
+                        mu_albedo_side *out, float *values, size_t most) {
     patch_maker m = {.source = source, .table = t, .core = core, .turn = turn};
     const int patches = t->quadrants * t->columns * ALBEDO_ROWS;
     size_t nodes = 0, cells = 0;
     out->unsure = 0;
     for (int k = 0; k < patches; k++) {
-        m.row = k % ALBEDO_ROWS, m.column = k / ALBEDO_ROWS % t->columns, m.quadrant = k / ALBEDO_ROWS / t->columns;
+        m.row = k % ALBEDO_ROWS, m.column = k / ALBEDO_ROWS % t->columns,
+        m.quadrant = k / ALBEDO_ROWS / t->columns;
         /* what is left, but for the least of those to come */
         const size_t used = nodes + cells, kept = (size_t)(patches - 1 - k) * 13;
         out->unsure = fmaxf(out->unsure, grow(&m, most > used + kept ? most - used - kept : 0));
         const int across = 1 << m.log[0], up = 1 << m.log[1];
-        out->patch[k] = (albedo_patch){(uint32_t)nodes, (uint32_t)cells, (uint8_t)m.log[0], (uint8_t)m.log[1]};
+        out->patch[k] =
+            (albedo_patch){(uint32_t)nodes, (uint32_t)cells, (uint8_t)m.log[0], (uint8_t)m.log[1]};
         for (int j = 0; j <= across; j++)
             for (int i = 0; i <= up; i++) values[nodes++] = m.value[j][i];
         cells += (size_t)(across * up);
@@ -158,7 +164,8 @@ static void lay(const closure *c, mu_albedo *t) {
     const double to[4] = {a * cosine, -a * sine, b * sine, b * cosine},
                  from[4] = {cosine / a, sine / b, -sine / a, cosine / b};
     for (int i = 0; i < 4; i++) t->to[i] = (float)to[i], t->from[i] = (float)from[i];
-    t->det = (float)(a * b), t->along = (float)sqrt(fmax(fabs(v.small), smallest * v.large) / v.large), t->k = (float)(b / a) / t->along;
+    t->det = (float)(a * b), t->along = (float)sqrt(fmax(fabs(v.small), smallest * v.large) / v.large),
+    t->k = (float)(b / a) / t->along;
     const int level = m->tilt[0] == 0 && m->tilt[1] == 0 && !(c->kernel->traits & ANISOTROPIC);
     t->quadrants = level ? 1 : 4;
     t->columns = level && v.large - fabs(v.small) <= 1e-6 * v.large ? 1 : ALBEDO_COLUMNS;
@@ -195,7 +202,8 @@ size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, 
     size_t used = 0;
     t->side[1].cells = 0;
     for (int i = 0; i < sides; i++) {
-        used += fill_side(source, t, core, i ? -1.0f : 1.0f, &t->side[i], values + used, (most - used) / (size_t)(sides - i));
+        used += fill_side(source, t, core, i ? -1.0f : 1.0f, &t->side[i], values + used,
+                          (most - used) / (size_t)(sides - i));
         t->side[i].passes = 0;
     }
     if (sides == 1) return used;

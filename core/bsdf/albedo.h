@@ -27,7 +27,12 @@
 #include "core/bsdf/musurf.h"
 
 /* Patches along S, and along u at most; halvings of a patch at most. */
-enum { ALBEDO_ROWS = 4, ALBEDO_COLUMNS = 2, ALBEDO_PATCHES = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS, ALBEDO_HALVINGS = 6 };
+enum {
+    ALBEDO_ROWS = 4,
+    ALBEDO_COLUMNS = 2,
+    ALBEDO_PATCHES = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS,
+    ALBEDO_HALVINGS = 6
+};
 
 typedef struct albedo_patch {
     uint32_t node, cell; /* its first */
@@ -47,8 +52,8 @@ typedef struct mu_albedo_side {
 typedef struct mu_albedo {
     float to[4], from[4], det, k, along; /* L, its inverse, |det L|; sqrt(B/A) */
     int roots;                           /* n */
-    int quadrants, columns;       /* 1 or 4; 1 or ALBEDO_COLUMNS */
-    mu_albedo_side side[2];       /* above; below too if the surface transmits */
+    int quadrants, columns;              /* 1 or 4; 1 or ALBEDO_COLUMNS */
+    mu_albedo_side side[2];              /* above; below too if the surface transmits */
 } mu_albedo;
 
 /* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. */
@@ -76,7 +81,8 @@ static inline albedo_place albedo_locate(const mu_albedo *t, const float w[3]) {
     const float row = albedo_row(t, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
     return (albedo_place){(quadrant * t->columns + j) * ALBEDO_ROWS + i, column - (float)j, row - (float)i,
-                          2 * part * (still > 0 ? rest / still : 1e30f) * t->det * ((1 - u) * (1 - u) + across * across) / (t->k * n * n * n)};
+                          2 * part * (still > 0 ? rest / still : 1e30f) * t->det *
+                              ((1 - u) * (1 - u) + across * across) / (t->k * n * n * n)};
 }
 
 static inline int albedo_cell(float *x, int log) {
@@ -98,9 +104,11 @@ static inline float albedo_lost(const mu_albedo_side *side, albedo_place at) {
 static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *side, albedo_place at) {
     const albedo_patch *p = &side->patch[at.patch];
     float x = at.u, y = at.s;
-    const int j = albedo_cell(&x, p->log_u), i = albedo_cell(&y, p->log_s), cell = (int)p->cell + (j << p->log_s) + i;
+    const int j = albedo_cell(&x, p->log_u), i = albedo_cell(&y, p->log_s),
+              cell = (int)p->cell + (j << p->log_s) + i;
     const float share = side->cumulative[cell] - (cell ? side->cumulative[cell - 1] : 0);
-    const float rows = (float)(ALBEDO_ROWS << p->log_s), row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
+    const float rows = (float)(ALBEDO_ROWS << p->log_s),
+                row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
     const float over_height = t->quadrants == 1 ? rows / 4 : rows * rows / (2 * row + 1);
     return fminf(share * (float)(t->columns << p->log_u) * over_height * at.stretch, 0x1p+126f);
 }

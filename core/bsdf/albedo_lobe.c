@@ -10,14 +10,16 @@
 #if MU_REAL_BITS == 24
 
 /* Gauss-Legendre on [0, 1], 4 nodes. */
-static const double node[4] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
+static const double node[4] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                               0.93056815579702629};
 static const double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                  0.17392742256872693};
 
 void mu_albedo_direction(const mu_albedo *t, int quadrant, float u, float s, float w[3]) {
     float rest = fmaxf(1 - s, 0);
     for (int k = 0; k < t->roots; k++) rest *= rest;
-    const float root = t->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)), r = root * (1 + root) / fmaxf(rest, 1e-7f);
+    const float root = t->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)),
+                r = root * (1 + root) / fmaxf(rest, 1e-7f);
     const float x = 1 - u, y = t->k * u, scale = r / sqrtf(x * x + y * y);
     const float q[2] = {quadrant & 1 ? -scale * x : scale * x, quadrant & 2 ? -scale * y : scale * y};
     w[0] = t->from[0] * q[0] + t->from[1] * q[1];
@@ -26,22 +28,23 @@ void mu_albedo_direction(const mu_albedo *t, int quadrant, float u, float s, flo
     w[0] /= length, w[1] /= length, w[2] = 1 / length;
 }
 
-static void integrate_panel(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
-                      double s1, double sums[2]) {
+static void integrate_panel(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0,
+                            double u1, double s0, double s1, double sums[2]) {
     for (int i = 0; i < 16; i++) {
         float w[3];
         mu_albedo_direction(t, quadrant, (float)(u0 + (u1 - u0) * node[i / 4]),
                             (float)(s0 + (s1 - s0) * node[i % 4]), w);
         const albedo_place at = albedo_locate(t, w);
-        const double cosines = weight[i / 4] * weight[i % 4] * (u1 - u0) * (s1 - s0) * (double)w[2] / (double)at.stretch;
+        const double cosines =
+            weight[i / 4] * weight[i % 4] * (u1 - u0) * (s1 - s0) * (double)w[2] / (double)at.stretch;
         sums[0] += cosines * (double)albedo_lost(side, at), sums[1] += cosines;
     }
 }
 
 /* The integral of lost cos over u0 ... u1 of a cell of S, and of cos, by Gauss's rule. A cell at S = 0 is halved toward it: of
  * a smooth surface that is where most directions are. */
-static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
-                      double s1, double sums[2]) {
+static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1,
+                      double s0, double s1, double sums[2]) {
     double high = s1;
     for (; s0 == 0 && high > 0.25 * (double)t->det; high /= 2)
         integrate_panel(t, side, quadrant, u0, u1, high / 2, high, sums);
@@ -49,14 +52,15 @@ static void integrate(const mu_albedo *t, const mu_albedo_side *side, int quadra
 }
 
 /* Along u a cell at 0 is halved toward it: under a strong anisotropy that is where most azimuths are. */
-static double share(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1, double s0,
-                    double s1, double *cosines) {
+static double share(const mu_albedo *t, const mu_albedo_side *side, int quadrant, double u0, double u1,
+                    double s0, double s1, double *cosines) {
     double sums[2] = {0, 0};
     if (u0 > 0 || t->columns == 1) {
         integrate(t, side, quadrant, u0, u1, s0, s1, sums);
     } else {
         double high = u1;
-        for (; high > (double)t->along * u1; high /= 2) integrate(t, side, quadrant, high / 2, high, s0, s1, sums);
+        for (; high > (double)t->along * u1; high /= 2)
+            integrate(t, side, quadrant, high / 2, high, s0, s1, sums);
         integrate(t, side, quadrant, 0, high, s0, s1, sums);
     }
     *cosines += sums[1];
@@ -109,8 +113,8 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *side, float u0, fl
         within = 4 * within - (float)quadrant;
     }
     const float u = ((float)(i / up) + within) / (float)(1 << p->log_u);
-    const double row = patch % ALBEDO_ROWS + (double)(i % up) / up,
-                 from = albedo_s(t, row / ALBEDO_ROWS), to = albedo_s(t, (row + 1.0 / up) / ALBEDO_ROWS);
+    const double row = patch % ALBEDO_ROWS + (double)(i % up) / up, from = albedo_s(t, row / ALBEDO_ROWS),
+                 to = albedo_s(t, (row + 1.0 / up) / ALBEDO_ROWS);
     mu_albedo_direction(t, quadrant, ((float)(patch / ALBEDO_ROWS % t->columns) + u) / (float)t->columns,
                         (float)(from + (to - from) * (double)u1), w);
 }

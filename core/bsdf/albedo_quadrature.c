@@ -143,7 +143,8 @@ float MU(albedo_integral)(const closure *c, double core, double allowed) {
     if (!(c->wo[2] > 0)) return 1;
     const double z = (double)c->map.view_z, v[4] = {(double)c->map.view[0] / z, (double)c->map.view[1] / z,
                                                     (double)c->map.view[2] / z, (double)c->map.view[3] / z};
-    const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]}, det = fabs(v[0] * v[3] - v[1] * v[2]);
+    const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]},
+                 det = fabs(v[0] * v[3] - v[1] * v[2]);
     ray l = {.c = c, .panel = 2.5, .transmission = c->surface->transmission};
     l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
     const double facing = atan2(v[2] * (double)c->wo[0] + v[3] * (double)c->wo[1],

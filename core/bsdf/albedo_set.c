@@ -34,14 +34,17 @@ size_t mu_albedo_set_bytes(const mu_definition *d) {
 
 /* Of what blurring raises (mu_blur); a histogram's is not known here, so that some of its tables are alike. */
 static float least_roughness(const surface *s, const mu_definition *d) {
-    const double core = d->ndf == MU_TABULATED ? 0 : d->ndf == MU_GTR ? fmin(1, (double)s->alpha / s->unit) : 1;
+    const double core = d->ndf == MU_TABULATED ? 0
+                        : d->ndf == MU_GTR     ? fmin(1, (double)s->alpha / s->unit)
+                                               : 1;
     return (float)core * map_least(&s->map);
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     const mu_definition single = reduced(d);
     const size_t most = floats(d);
-    albedo_source source = {.definition = &single, .error = d->compensation_error, .halvings = ALBEDO_HALVINGS};
+    albedo_source source = {
+        .definition = &single, .error = d->compensation_error, .halvings = ALBEDO_HALVINGS};
     source.surface = MU(mu_surface_make)(&single, (char *)out + padded(sizeof *out + most * sizeof(float)));
     size_t used = mu_albedo_make(&source, &out->level[0], out->values, most);
     out->levels = 1;
@@ -52,7 +55,8 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
         used += mu_albedo_make(&source, &out->level[out->levels++], out->values + used, most - used);
     }
     out->unsure = 0;
-    for (int k = 0; k < (d->transmission ? 2 : 1); k++) out->unsure = fmaxf(out->unsure, out->level[0].side[k].unsure);
+    for (int k = 0; k < (d->transmission ? 2 : 1); k++)
+        out->unsure = fmaxf(out->unsure, out->level[0].side[k].unsure);
     out->bytes = sizeof *out + used * sizeof(float);
 }
 

@@ -45,7 +45,8 @@ static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], floa
         const mu_albedo *t = l->level[k];
         const albedo_place at = albedo_locate(t, v);
         lost += l->share[k] * albedo_lost(&t->side[side], at);
-        *density += l->share[k] * (t->side[side].average / l->average[side]) * albedo_density(t, &t->side[side], at);
+        *density +=
+            l->share[k] * (t->side[side].average / l->average[side]) * albedo_density(t, &t->side[side], at);
     }
     return lost;
 }

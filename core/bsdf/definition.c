@@ -96,7 +96,8 @@ static int tilts_too_much(const mu_definition *d) {
 
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
     if (d->multiple == MU_COMPENSATED && !(d->compensation_error >= 1e-4 && d->compensation_error <= 0.5))
-        return complain(why, "compensation_error", d->compensation_error, "an albedo is off by 0.0001 to 0.5");
+        return complain(why, "compensation_error", d->compensation_error,
+                        "an albedo is off by 0.0001 to 0.5");
     const char *right = NULL;
     if (d->multiple != MU_SINGLE && mu_is_mirror(d) && (d->tilt[0] != 0 || d->tilt[1] != 0)) {
         right = "a tilted mirror scatters singly: what it loses has no table, and no walk of one normal ends";

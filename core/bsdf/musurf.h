@@ -95,12 +95,14 @@ typedef struct mu_albedo_set mu_albedo_set; /* tables of a compensated surface *
 /* What a surface is. Doubles whatever the precision of shading. */
 typedef struct mu_definition {
     mu_ndf ndf;
-    double alpha; /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror. Sheen: its r, > 0. GTR with gamma in [1, 2): 0, or
+    double
+        alpha; /* slope roughness: >= 0, and <= 1 for GTR; 0 is a mirror. Sheen: its r, > 0. GTR with gamma in [1, 2): 0, or
                      1e-140 and more. The float functions hold widths of slopes (mu_slope_width) of 2^-30 to 2^30 */
     double gamma;        /* the tail: of GTR >= 0, of STD > 3/2; ignored by the others */
     double exponent;     /* of Phong, >= 0; ignored by the others */
     double transform[4]; /* M: the two rows; any finite, non-singular map, mirrors too */
-    double tilt[2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; the ellipsoid's theta_x, theta_y */
+    double tilt
+        [2]; /* mean slope (dz/dx, dz/dy) of the microsurface before M; the ellipsoid's theta_x, theta_y */
     mu_sampler sampler;
     mu_masking_form masking;
     /* Of MU_TABULATED, instead of alpha: how often which slope (dz/dx, dz/dy) is met, on a grid over x_min ... x_max, y_min

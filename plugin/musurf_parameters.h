@@ -51,10 +51,10 @@ enum {
 enum { PARAMETER_COUNT = PARAMETER_END - 1 };
 extern const musurf_param musurf_parameters[PARAMETER_COUNT];
 
-/* What the settings say. M is transform times `inner`; with varying, transform is read from slots at each hit. */
+/* What the settings say. With varying, M is a transform that is read from slots at each hit times `inner`. */
 typedef struct parsed {
-    mu_definition definition; /* definition.transform is M, or `inner` if varying */
-    double inner[4];          /* stretch, Eq. (31), times anisotropy: rows */
+    mu_definition definition; /* definition.transform is `inner` */
+    double inner[4];          /* M, rows; varying: stretch, Eq. (31), times anisotropy */
     int sampler_auto;         /* the sampler is to be measured */
     int varying;
     uint32_t slot;

@@ -60,8 +60,8 @@ static musurf_result parse_alpha(const given *g, mu_definition *d) {
     return MUSURF_OK;
 }
 
-/* Seed 001: A, or roughness along the axes and three angles. Writes the ellipsoid's M. */
-static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[4]) {
+/* Seed 001: A, or roughness along the axes and three angles. Writes the ellipsoid's own map under `outer`. */
+static musurf_result parse_ellipsoid(const given *g, mu_definition *d, const double outer[4], double m[4]) {
     const int foreign = any(g, (const uint32_t[]){ROTATION, DISNEY, CYCLES, OPENPBR, GLTF, COVARIANCE, 0});
     if (foreign)
         return misplaced(g, foreign, "an ellipsoid has alpha_x, alpha_y, theta_x, theta_y, theta_z, or A");
@@ -78,13 +78,8 @@ static musurf_result parse_ellipsoid(const given *g, mu_definition *d, double m[
                                  musurf_number(g, THETA_Z)};
         mu_ellipsoid_matrix(alpha, theta, A);
     }
-    double own[2];
     d->ndf = MU_GGX, d->alpha = 1;
-    if (mu_ellipsoid(A, m, own)) { /* a further tilt t adds t.(M p) to the height over p */
-        const double t[2] = {d->tilt[0], d->tilt[1]};
-        for (int i = 0; i < 2; i++) d->tilt[i] = own[i] + m[i] * t[0] + m[2 + i] * t[1];
-        return MUSURF_OK;
-    }
+    if (mu_ellipsoid_under(A, outer, m, d->tilt)) return MUSURF_OK;
     return misplaced(
         g,
         g->by_id[A_MATRIX]  ? A_MATRIX
@@ -185,20 +180,19 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     if (foreign) return misplaced(g, foreign, "phong has an exponent in place of a roughness");
     result = parse_histogram(g, d);
     if (result != MUSURF_OK) return result;
-    result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, m) : parse_anisotropy(g, d, m);
-    if (result != MUSURF_OK) return result;
-
-    double stretch[4];
+    double stretch[4], outer[4];
     (void)mu_transform_stretch(musurf_number(g, STRETCH), 0, stretch); /* Eq. (31); singular: M is refused */
-    multiply(stretch, m, out->inner);
     const musurf_setting *set = g->by_id[TRANSFORM];
     out->varying = set && COVERS(set, source) && set->source == MUSURF_SLOT;
-    if (out->varying) {
-        out->slot = set->slot;
-        memcpy(d->transform, out->inner, sizeof d->transform);
+    if (!out->varying) musurf_numbers(g, TRANSFORM, 4, transform);
+    multiply(transform, stretch, outer);
+    if (ndf == ELLIPSOID) {
+        result = parse_ellipsoid(g, d, outer, out->inner);
     } else {
-        musurf_numbers(g, TRANSFORM, 4, transform);
-        multiply(transform, out->inner, d->transform);
+        result = parse_anisotropy(g, d, m);
+        multiply(outer, m, out->inner);
     }
-    return MUSURF_OK;
+    if (out->varying) out->slot = set->slot; /* what varies is put before `inner`, point by point */
+    memcpy(d->transform, out->inner, sizeof d->transform);
+    return result;
 }

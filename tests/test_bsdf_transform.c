@@ -249,6 +249,47 @@ static void ellipsoid_keeps_the_digits_of_the_small_one(void **state) {
         }
 }
 
+/* Under an ill-conditioned M the composed map is M times the ellipsoid's own, turned, and its determinant moves by no more than
+ * twice what rounding M does to its own, |M00 M11| + |M01 M10| over |det M|: S of ellipsoid.c is at most 2 of those, |det| moves
+ * by 2 delta S, and delta is 8 units: six roundings of an entry of Q, its product and the sum. 16 more are those of det Q itself. */
+static void ellipsoid_composes_as_well_as_M_allows(void **state) {
+    (void)state;
+    const double unit = 0x1p-53, tilt[2] = {0.2, -0.4}, I[4] = {1, 0, 0, 1};
+    double worst_of_products = 0;
+    for (int i = 0; i < 400; i++) {
+        const double turn = 0.7 * i, way = 1.9 * i, thin = i % 2 ? -1e-7 : 1e-7, c = cos(turn), s = sin(turn),
+                     e = cos(way), f = sin(way);
+        const double M[4] = {c * e - s * thin * f, -c * f - s * thin * e, s * e + c * thin * f,
+                             -s * f + c * thin * e};
+        double A[9], Q[4], P[4], own[2] = {tilt[0], tilt[1]}, all[2] = {tilt[0], tilt[1]};
+        mu_ellipsoid_matrix((const double[]){i % 3 ? 1e-5 : 0.3, 0.3},
+                            (const double[]){0.4, -0.2, 1.57 + 0.002 * (i % 40)}, A);
+        assert_true(mu_ellipsoid_under(A, I, Q, own) && mu_ellipsoid_under(A, M, P, all));
+        const double det_Q = Q[0] * Q[3],
+                     det_M = fma(M[0], M[3], -M[1] * M[2]) - fma(M[1], M[2], -M[1] * M[2]),
+                     det_P = fma(P[0], P[3], -P[1] * P[2]) - fma(P[1], P[2], -P[1] * P[2]);
+        const double by_M = (fabs(M[0] * M[3]) + fabs(M[1] * M[2])) / fabs(det_M);
+        assert_true(fabs(fabs(det_P / (det_M * det_Q)) - 1) <= unit * (2 * 8 * 2 * by_M + 16));
+        double plain[4], largest = 0;
+        for (int k = 0; k < 4; k++) plain[k] = M[k / 2 * 2] * Q[k % 2] + M[k / 2 * 2 + 1] * Q[2 + k % 2];
+        for (int k = 0; k < 4; k++) largest = fmax(largest, fabs(plain[k]));
+        for (int k = 0; k < 4; k++) { /* P P^T, and the tilt as P takes it along */
+            const int x = k / 2 * 2, y = k % 2 * 2;
+            bsdf_near((P[x] * P[y] + P[x + 1] * P[y + 1]) / largest / largest + 2,
+                      (plain[x] * plain[y] + plain[x + 1] * plain[y + 1]) / largest / largest + 2, 1e-14);
+        }
+        const double reach = largest * hypot(own[0], own[1]);
+        for (int k = 0; k < 4; k += 2)
+            bsdf_near((P[k] * all[0] + P[k + 1] * all[1]) / reach + 2,
+                      (plain[k] * own[0] + plain[k + 1] * own[1]) / reach + 2, 1e-14);
+        const double det_plain =
+            fma(plain[0], plain[3], -plain[1] * plain[2]) - fma(plain[1], plain[2], -plain[1] * plain[2]);
+        worst_of_products =
+            fmax(worst_of_products, fabs(det_plain / (det_M * det_Q) - 1) / (unit * (32 * by_M + 16)));
+    }
+    assert_true(worst_of_products > 20); /* a product of the two would not do */
+}
+
 /* What the library would take for an index, and tilts whose square in units of the roughness is no number. */
 static void refuses_what_is_no_surface(void **state) {
     (void)state;
@@ -302,6 +343,7 @@ int main(void) {
                                        cmocka_unit_test(takes_every_scale),
                                        cmocka_unit_test(refuses_singular_maps),
                                        cmocka_unit_test(ellipsoid_keeps_the_digits_of_the_small_one),
+                                       cmocka_unit_test(ellipsoid_composes_as_well_as_M_allows),
                                        cmocka_unit_test(refuses_what_is_no_surface),
                                        cmocka_unit_test(is_finite_at_the_horizon)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -51,7 +51,16 @@ static void eliminate(double A[9]) {
     }
 }
 
-int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]) {
+/* M Q for the ellipsoid's own Q = B2^-1, each of whose entries keeps its digits, is rounded to a few 2^-53 of |M| |Q|, and
+ * that turns the thin side of an ill-conditioned M by up to S = (|M| |Q|)_00 (|M| |Q|)_11 + (|M| |Q|)_01 (|M| |Q|)_10 over |det M Q| of
+ * them. The rounding of M alone does (|M00 M11| + |M01 M10|) / |det M|. With Q lower triangular S is that and 2 |q/s| |M01 M11| /
+ * |det M|; with Q upper triangular (turned from the right, which GGX does not notice) 2 (|q| s / (p^2 + q^2)) |M00 M10| / |det M|.
+ * As q^2 < p^2 + q^2, the smaller of both is below what M alone does: the better Q at most doubles that. */
+static int is_better_lower(double p, double q, double s, const double M[4]) {
+    return hypot(p, q) * sqrt(fabs(M[1])) * sqrt(fabs(M[3])) <= fabs(s) * sqrt(fabs(M[0])) * sqrt(fabs(M[2]));
+}
+
+int mu_ellipsoid_under(const double A[9], const double M[4], double transform[4], double tilt[2]) {
     double B[9], largest = 0;
     for (int i = 0; i < 9; i++) {
         if (!(fabs(A[i]) <= DBL_MAX)) return 0;
@@ -62,22 +71,32 @@ int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]) {
     eliminate(B);
     const double beta = B[8];
     if (beta == 0) return 0;
-    /* B2 lower triangular, too, by a rotation: p is its determinant over s, no difference of what cancels */
+    /* B2 = [p 0; q s], too, by a rotation: p is its determinant over s, no difference of what cancels */
     const double norm = hypot(B[1], B[4]);
     if (norm == 0) return 0;
     int exponent; /* lest the determinant underflow */
     (void)frexp(norm, &exponent);
     const double det = product_difference(B[0], ldexp(B[4], -exponent), ldexp(B[1], -exponent), B[3]);
     const double p = det / ldexp(norm, -exponent) / beta, s = norm / beta,
-                 q = (B[0] * (B[1] / norm) + B[3] * (B[4] / norm)) / beta, b[2] = {B[6] / beta, B[7] / beta};
+                 q = (B[0] * (B[1] / norm) + B[3] * (B[4] / norm)) / beta;
+    const double b[2] = {tilt[0] - B[6] / beta, tilt[1] - B[7] / beta};
     if (!(fabs(p * s) > 0)) return 0;
-    transform[0] = 1 / p, transform[1] = 0; /* B2 = [p 0; q s] */
-    transform[2] = -q / (p * s), transform[3] = 1 / s;
-    tilt[0] = -(transform[0] * b[0] + transform[2] * b[1]); /* t = -M^T b */
-    tilt[1] = -(transform[1] * b[0] + transform[3] * b[1]);
+    double Q[4] = {1 / p, 0, -q / (p * s), 1 / s};
+    if (!is_better_lower(p, q, s, M)) { /* B2 = [r qs/r; 0 ps/r] */
+        const double r = hypot(p, q);
+        Q[0] = 1 / r, Q[1] = -(q / r) / p, Q[2] = 0, Q[3] = r / (p * s);
+    }
     for (int i = 0; i < 4; i++)
-        if (!(fabs(transform[i]) <= DBL_MAX)) return 0;
+        if (!(fabs(Q[i]) <= DBL_MAX)) return 0;
+    for (int i = 0; i < 2; i++) tilt[i] = Q[i] * b[0] + Q[2 + i] * b[1]; /* Q^T (t - b) */
+    for (int i = 0; i < 4; i++) transform[i] = M[i / 2 * 2] * Q[i % 2] + M[i / 2 * 2 + 1] * Q[2 + i % 2];
     return fabs(tilt[0]) <= DBL_MAX && fabs(tilt[1]) <= DBL_MAX;
+}
+
+int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]) {
+    const double identity[4] = {1, 0, 0, 1};
+    tilt[0] = tilt[1] = 0;
+    return mu_ellipsoid_under(A, identity, transform, tilt);
 }
 
 #endif

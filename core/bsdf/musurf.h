@@ -163,6 +163,9 @@ int mu_transform_is_similarity(const double transform[4]);
 /* The ellipsoid distribution of Walter et al. 2014 (revised 2016), Eq. (1), by its A (three rows): it is GGX of alpha 1 under the transform and
  * the tilt written here (the family is closed under M: D_A under M is D of A M^-1). 0 if A is singular or not finite. */
 int mu_ellipsoid(const double A[9], double transform[4], double tilt[2]);
+/* The same under a further map M, and of mean slope `tilt` (in: what adds to its own before M acts; out: what is left to give
+ * GGX). A product with what mu_ellipsoid writes is the same surface, but loses more digits where M is ill-conditioned. */
+int mu_ellipsoid_under(const double A[9], const double M[4], double transform[4], double tilt[2]);
 /* A = S R, their Eq. (2) and (3): roughness along the axes, then rotations in radians. */
 void mu_ellipsoid_matrix(const double alpha[2], const double theta[3], double A[9]);
 

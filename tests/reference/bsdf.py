@@ -67,6 +67,21 @@ def upper(A):
     return a, b, mp.sqrt(g[1][1] - q * q - b * b), p, q
 
 
+def triangle(A, M):
+    """(N, p, q): the matrix [[N, 0], [(p, q), 1]] with the same ellipsoid as A, N upper or lower triangular, of which M N^-1 in
+    rounded numbers is the better: the one whose |M| |N^-1| has the smaller permanent (core/bsdf/ellipsoid.c says why)."""
+    a, b, c, p, q = upper(A)
+    s = mp.sqrt(b * b + c * c)
+    options = [[[a, b], [ZERO, c]], [[a * c / s, ZERO], [a * b / s, s]]]
+
+    def permanent(N):
+        (w, x), (y, z) = N
+        S = product([[abs(e) for e in row] for row in M], [[abs(z), abs(x)], [abs(y), abs(w)]])  # |N^-1| |det N|
+        return S[0][0] * S[1][1] + S[0][1] * S[1][0]
+
+    return min(options, key=permanent), p, q
+
+
 class Bsdf:
     """Numbers by name that may be perturbed one by one. Those named by ABSOLUTE stand at 0 or 1 and are what no input
     number is but every program has: the lengths of its unit vectors, and the entries of the composed map."""
@@ -141,13 +156,16 @@ class Bsdf:
             self.An = columns[2]
 
     def rounded(self):
-        """What a program keeps of A is rounded (d0 to d4), and so is its product with M (d5 to d8): M N^-1 + d |M| |N^-1|,
-        N = [[a, b], [0, c]], is M moved by d |M| |N^-1| N."""
+        """What a program keeps of A is rounded (d0 to d4), and so is its product with M (d5 to d8): M N^-1 + d |M| |N^-1| is M moved
+        by d |M| |N^-1| N. N is the better of the two triangles, which at most doubles what rounding M does."""
         d = [self.x[f"d{i}"] for i in range(9)]
-        a, b, c, p, q = (value * (1 + d[i]) for i, value in enumerate(upper(self.A)))
-        self.A = [[a, b, ZERO], [ZERO, c, ZERO], [p, q, ONE]]
-        sizes = product([[abs(e) for e in row] for row in self.M], [[abs(1 / a), abs(b / (a * c))], [ZERO, abs(1 / c)]])
-        moves = product([[d[5 + 2 * i + j] * sizes[i][j] for j in range(2)] for i in range(2)], [[a, b], [ZERO, c]])
+        N, p, q = triangle(self.A, self.M)
+        size = abs(N[0][0] * N[1][1])
+        inverse = [[abs(N[1][1]) / size, abs(N[0][1]) / size], [abs(N[1][0]) / size, abs(N[0][0]) / size]]
+        N = [[N[0][0] * (1 + d[0]), N[0][1] * (1 + d[1])], [N[1][0] * (1 + d[1]), N[1][1] * (1 + d[2])]]
+        self.A = [[*N[0], ZERO], [*N[1], ZERO], [p * (1 + d[3]), q * (1 + d[4]), ONE]]
+        sizes = product([[abs(e) for e in row] for row in self.M], inverse)
+        moves = product([[d[5 + 2 * i + j] * sizes[i][j] for j in range(2)] for i in range(2)], N)
         self.M = [[self.M[i][j] + moves[i][j] for j in range(2)] for i in range(2)]
         self.det = self.M[0][0] * self.M[1][1] - self.M[0][1] * self.M[1][0]
 

@@ -120,6 +120,13 @@ class Lines(unittest.TestCase):
         self.assertIn(done.returncode, (0, 1))
         self.assertEqual(len(answers(done)), len(lines))
 
+    def test_mixed_sampling_takes_gtr_s_own_alpha_where_gtr_is_ggx(self):
+        """Appendix B: uniform with probability alpha, also at gamma = 0, where the surface is GGX of alpha 1."""
+        at, beside = (answer["pdf"] for answer in answers(musurf("eval", stdin=[
+            {"material": microfacet(ndf="gtr", alpha=0.1, gamma=gamma, sampler="mixed"), "wo": UP, "wi": [0.6, 0, 0.8]} for gamma in (0, 1e-13)])))
+        self.assertAlmostEqual(at, 0.9 * math.sqrt(0.9) / math.pi / (4 * math.sqrt(0.9)) + 0.1 / (2 * math.pi), delta=1e-15)
+        self.assertAlmostEqual(at, beside, delta=1e-12)
+
 
 class Meaning(unittest.TestCase):
     def test_keys(self):

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * ellipsoid.c: the ellipsoid distribution (Walter et al. 2014-2016, "seed 001") as GGX of alpha 1 under a transform and a
+ * ellipsoid.c: the ellipsoid distribution (Walter et al. 2014, revised 2016) as GGX of alpha 1 under a transform and a
  * tilt. In double.
  *
  * Eq. (1), D = 1 / (pi |det A| |A n| |A^-T m|^4), depends on A up to rotations from the left and scale. With A = Q B, B

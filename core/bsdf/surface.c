@@ -104,6 +104,8 @@ size_t MU(mu_surface_bytes)(const mu_definition *definition) {
 surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     surface *s = memory;
     const plan p = choose(d);
+    /* Appendix B: gtr's own alpha also where it comes down to GGX of another */
+    const double mixed = fmin(d->ndf == MU_GTR ? d->alpha : p.definition.alpha, 1);
     *s = (surface){.kernel = p.kernel,
                    .general = p.kernel,
                    .sampler = d->sampler,
@@ -112,7 +114,7 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
                    .is_delta = (p.kernel->traits & IS_DELTA) != 0,
                    .compensated = d->multiple == MU_COMPENSATED && !scatters_once(&p, d),
                    .alpha = R(p.definition.alpha),
-                   .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? fmin(p.definition.alpha, 1) : 0.3),
+                   .uniform_share = R(d->sampler == MU_SAMPLE_MIXED ? mixed : 0.3),
                    .unit = 1,
                    .tilt = {p.definition.tilt[0], p.definition.tilt[1]},
                    .name = p.name};

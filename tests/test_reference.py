@@ -47,8 +47,8 @@ def underflow(precision, line, key):
         made_of.append(line["sigma0"])
     if key == "Dv":
         made_of.append(expect["D"])
-    if (key == "pdf" or key[0] == "f") and "Dh" in line:
-        made_of.append(line["Dh"])
+    if (key in ("pdf", "weight") or key[0] == "f") and "Dh" in line:
+        made_of.append(line.get("Dpdf", line["Dh"]) if key == "pdf" else line["Dh"])
     return sum(SMALLEST[precision] / float(value) if float(value) else math.inf for value in made_of)
 
 

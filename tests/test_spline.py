@@ -13,34 +13,16 @@ import sys
 import tempfile
 import unittest
 
-from mpmath import lu_solve, matrix, mp, mpf, log, sqrt
+from mpmath import mp, mpf
 
-from command import answers, microfacet, musurf, strict
+from command import ROOT, answers, microfacet, musurf, strict
+
+sys.path.insert(0, str(ROOT / "tests/reference"))
+from spline import natural_spline, visibility  # noqa: E402
 
 mp.dps = 50
 ALPHAS, GAMMAS = (1e-6, 0.01, 0.1, 0.3, 0.6, 0.999), (0.05, 0.5, 0.9, 1, 1.0001, 1.6, 2, 2.3, 3, 3.5, 4)
 ANGLES = ((0.01, 1), (0.5, 1), (1, 1), (1, 0.1), (1, 1e-3))  # sine and cosine, up to a factor
-
-
-def visibility(alpha, mu):
-    """S_0 to S_4 as Appendix A prints them."""
-    a2, a4 = alpha**2, alpha**4
-    A1, B1, B3, A4 = sqrt(mu**2 + a2), sqrt(mu**2 + 1), a2 + 1, 8 * a4 + 8 * a2 + 8
-    return [
-        2 / (1 + sqrt(1 / mu**2 + 1)),
-        mu * log(a2) / (A1 - B1 + mu * log(a2 * (mu + B1) / (mu + A1))),
-        2 / (1 + sqrt(a2 / mu**2 + 1)),
-        4 * B3 * mu * A1 / (a2 * (3 * a2 + 1) + 2 * mu * B3 * (mu + A1)),
-        2 * A4 * mu * A1**3 / (A4 * mu * (A1**3 + mu**3) + 3 * a2 * (a2 * (5 * a4 + 2 * a2 + 1) + 4 * mu**2 * (2 * a4 + a2 + 1))),
-    ]
-
-
-def natural_spline(y, x):
-    """Through (k, y[k]), no curvature at the ends."""
-    bend = [mpf(0), *lu_solve(matrix([[4, 1, 0], [1, 4, 1], [0, 1, 4]]), matrix([6 * (y[k - 1] - 2 * y[k] + y[k + 1]) for k in (1, 2, 3)])), mpf(0)]
-    k = min(int(x), 3)
-    t = x - k
-    return (1 - t) * y[k] + t * y[k + 1] + ((1 - t) ** 3 - (1 - t)) / 6 * bend[k] + (t**3 - t) / 6 * bend[k + 1]
 
 
 def spline(**parameters):

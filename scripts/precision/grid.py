@@ -75,40 +75,52 @@ def light(rng, material, wo, wm, eta):
     return questions.light(rng, material, wo, wm, eta)
 
 
+def clear(m):
+    """Whether the surface is a mirror or a pane, whose one direction no eval shows."""
+    return m["ndf"] == "flat" or m.get("alpha") == 0
+
+
+def point(rng, m, tilts=TILTS, glass=0.25, cosines=COSINES):
+    """A material with a law of normals, moved and put before directions: (question, where on the axes it lies, its name)."""
+    M, k, scale = transform(rng)
+    m.update(M)
+    if m["ndf"] not in ("ellipsoid", "phong") and m.get("alpha", 0) > 0 and rng.random() < 0.2:
+        m.update(anisotropy(rng))
+    lean = rng.choice(tilts)
+    if lean:
+        slope, phi = math.tan(math.radians(lean)), rng.uniform(0, 2 * math.pi)
+        m["tilt"] = [slope * math.cos(phi), slope * math.sin(phi)]
+    if rng.random() < 0.5:
+        m["masking"] = rng.choice(MASKINGS)
+    below, eta = False, None
+    if rng.random() < glass:
+        eta, below = rng.choice(ETAS), rng.random() < 0.5
+        m.update({"transmission": True, "fresnel": {"dielectric": eta}})
+        eta = 1 / eta if below else eta
+    elif rng.random() < 0.3:
+        m["fresnel"] = rng.choice(FRESNEL)[2]
+    cosine = rng.choice(cosines)
+    wo = direction(rng, cosine)
+    wm = direction(rng, rng.choice(COSINES)) if clear(m) else questions.micronormal(rng, m, wo)
+    wi, how = light(rng, m, wo, wm, eta)
+    sign = -1 if below else 1
+    wo, wm, wi = ([sign * x for x in v] for v in (wo, wm, wi))
+    rows = m.get("transform", [[1, 0], [0, 1]])
+    alpha = None if m["ndf"] in ("ellipsoid", "tabulated", "flat") else \
+        m["alpha"] if m["ndf"] != "phong" else math.sqrt(2 / (m["exponent"] + 2))
+    axes = {"family": m["ndf"], "alpha": alpha, "gamma": m.get("gamma"), "cos": cosine, "cond": k, "scale": scale, "tilt": lean,
+            "light": how, "refraction": sign * wi[2] < 0, "below": below, "sampler": m.get("sampler", "visible"),
+            "smith": m.get("smith", "exact"), "masking": m.get("masking", "height_correlated"),
+            "mirrored": rows[0][0] * rows[1][1] < rows[0][1] * rows[1][0]}
+    text = ", ".join(f"{key} {value if isinstance(value, str) else format(value, '.10g')}" for key, value in m.items()
+                     if isinstance(value, float) or key in ("sampler", "smith", "multiple_scattering"))
+    name = f"{m['ndf']} {text}; M cond {k:g} scale {scale:g}; tilt {lean}; wo.z {sign * cosine:g}; wi {how}"
+    return {"material": {"material": "musurf.microfacet", **m}, "wo": wo, "wm": wm, "wi": wi}, axes, name
+
+
 def points(count):
     """(question of `musurf eval`, where on the axes it lies), `count` of them, always the same."""
     rng = random.Random(SEED)
     for number in range(1, count + 1):
-        m = law(rng)
-        M, k, scale = transform(rng)
-        m.update(M)
-        if m["ndf"] not in ("ellipsoid", "phong") and m["alpha"] > 0 and rng.random() < 0.2:
-            m.update(anisotropy(rng))
-        lean = rng.choice(TILTS)
-        if lean:
-            slope, phi = math.tan(math.radians(lean)), rng.uniform(0, 2 * math.pi)
-            m["tilt"] = [slope * math.cos(phi), slope * math.sin(phi)]
-        if rng.random() < 0.5:
-            m["masking"] = rng.choice(MASKINGS)
-        below, eta = False, None
-        if rng.random() < 0.25:
-            eta, below = rng.choice(ETAS), rng.random() < 0.5
-            m.update({"transmission": True, "fresnel": {"dielectric": eta}})
-            eta = 1 / eta if below else eta
-        elif rng.random() < 0.3:
-            m["fresnel"] = rng.choice(FRESNEL)[2]
-        cosine = rng.choice(COSINES)
-        wo = direction(rng, cosine)
-        wm = questions.micronormal(rng, m, wo) if m.get("alpha") != 0 else direction(rng, rng.choice(COSINES))
-        wi, how = light(rng, m, wo, wm, eta)
-        sign = -1 if below else 1
-        wo, wm, wi = ([sign * x for x in v] for v in (wo, wm, wi))
-        axes = {"family": m["ndf"], "alpha": m.get("alpha", 0.0 if m["ndf"] != "phong" else
-                                                   math.sqrt(2 / (m.get("exponent", 0) + 2))),
-                "gamma": m.get("gamma"), "cos": cosine, "cond": k, "scale": scale, "tilt": lean, "light": how,
-                "refraction": sign * wi[2] < 0}
-        if m["ndf"] == "ellipsoid":
-            axes["alpha"] = None
-        text = ", ".join(f"{key} {value:.10g}" for key, value in m.items() if isinstance(value, float))
-        yield {"id": f"{number}: {m['ndf']} {text}; M cond {k:g} scale {scale:g}; tilt {lean}; wo.z {sign * cosine:g}; wi {how}",
-               "material": {"material": "musurf.microfacet", **m}, "wo": wo, "wm": wm, "wi": wi}, axes
+        question, axes, name = point(rng, law(rng))
+        yield {"id": f"{number}: {name}", **question}, axes

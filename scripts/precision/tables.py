@@ -5,9 +5,14 @@ import html
 
 import numpy as np
 
-from .measure import QUANTITIES
+from .measure import ROWS
 
-SYMBOL = {"Lambda": "Λ", "sigma": "σ"}
+
+
+def symbol(row):
+    return row.replace("Lambda", "Λ").replace("sigma", "σ")
+
+
 FORMATS = ("double", "float")
 
 
@@ -16,7 +21,7 @@ def summary(records):
     result = {}
     for precision in FORMATS:
         result[precision] = {}
-        for quantity in QUANTITIES:
+        for quantity in ROWS:
             rows = [r for r in records if r["precision"] == precision and r["quantity"] == quantity]
             sure = [r for r in rows if r["determined"]]
             if not sure:
@@ -34,6 +39,16 @@ def summary(records):
     return result
 
 
+def coverage(records, axes, wanted):
+    """[(axis, value, questions, values judged in double and float)]; a question none of whose values has an exact one counts 0."""
+    rows = []
+    for axis, values in wanted.items():
+        for value in values:
+            judged = sum(r[axis] == value for r in records if axis in r)
+            rows.append((axis, value, sum(a[axis] == value for a in axes), judged))
+    return rows
+
+
 def number(x):
     return "0" if x == 0 else f"{x:.1e}"
 
@@ -43,11 +58,11 @@ def full(sums):
     head = ["", "format", "values", "not determined", "median", "p99", "worst", "p99 ULP", "worst ULP", "p99 beyond inputs",
             "worst beyond inputs", "of the bound", "worst at", "worst beyond inputs at"]
     rows = []
-    for quantity in QUANTITIES:
+    for quantity in ROWS:
         for precision in FORMATS:
             s = sums[precision].get(quantity)
             if s:
-                rows.append([SYMBOL.get(quantity, quantity), precision, str(s["values"]), str(s["undetermined"]),
+                rows.append([symbol(quantity), precision, str(s["values"]), str(s["undetermined"]),
                              *(number(s[k]) for k in ("median", "p99", "worst")),
                              *(f"{s[k]:.3g}" for k in ("ulp_p99", "ulp_worst")),
                              *(number(s[k]) for k in ("excess_p99", "excess_worst")), f"{s['of_allowed']:.3f}", s["where"],
@@ -58,9 +73,9 @@ def full(sums):
 def short(sums):
     """Head and rows for the README."""
     head = ["", "double, p99", "worst", "beyond inputs", "float, p99", "worst", "beyond inputs"]
-    return head, [[SYMBOL.get(quantity, quantity), *(number(sums[precision][quantity][key]) for precision in FORMATS
+    return head, [[symbol(quantity), *(number(sums[precision][quantity][key]) for precision in FORMATS
                                                      for key in ("p99", "worst", "excess_worst"))]
-                  for quantity in QUANTITIES if all(quantity in sums[p] for p in FORMATS)]
+                  for quantity in ROWS if all(quantity in sums[p] for p in FORMATS)]
 
 
 def markdown(head, rows):

@@ -14,7 +14,24 @@ def load(folder):
     """Numbers alone, with the pictures beside them; the single records stay in their own file."""
     found = json.loads((folder / "stability.json").read_text())
     pictures = [(path.stem, path.read_bytes()) for path in sorted(folder.glob("*.png"))]
-    return {"points": found["points"], "failures": found["failures"], "summary": found["summary"]}, pictures
+    return {key: found[key] for key in ("points", "drawn", "failures", "summary", "told", "checks", "coverage") if key in found}, pictures
+
+
+def table(heads, rows):
+    cells = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{''.join(f'<th>{html.escape(h)}</th>' for h in heads)}</tr></thead><tbody>{cells}</tbody></table>"
+
+
+def held(found):
+    """What was held to ranges alone, and what the questions were."""
+    told = "".join(f"<p>{html.escape(text)}</p>" for text in found.get("told", []))
+    checks = found.get("checks", {})
+    names = list(dict.fromkeys(name for held in checks.values() for name in held["numbers"]))
+    rows = [[name, *(held["numbers"].get(name, 0) for held in checks.values()), sum(held["failures"].get(name, 0) for held in checks.values())]
+            for name in names]
+    asked = table(("axis", "value", "questions", "values judged"), found["coverage"]) if found.get("coverage") else ""
+    asked = asked and f"<details><summary>What was asked</summary>{asked}</details>"
+    return told + (table(("held to ranges and bounds", *checks, "failures"), rows) if rows else "") + asked
 
 
 def section(found, pictures):
@@ -34,4 +51,4 @@ def section(found, pictures):
     return (f"{head}<p>Relative errors over {found['points']} materials and directions against 50-digit answers: {len(found['failures']) or 'no'} failures. "
             "<i>Beyond inputs</i> is what is left of the worst when the rounding of the inputs themselves is taken off; an error must stay within "
             f"its bound (1). <code>{HOW}</code></p><table><thead><tr>{''.join(f'<th>{h}</th>' for h in HEADS)}</tr></thead><tbody>{''.join(rows)}</tbody>"
-            f"</table>{f'<ul>{failures}</ul>' if failures else ''}{figures}")
+            f"</table>{f'<ul>{failures}</ul>' if failures else ''}{held(found)}{figures}")

@@ -11,10 +11,15 @@ Ellipsoids: Eq. (1) and (28) of *The Ellipsoid NDF*, with A as it stands. From t
     L = max(0, Lambda); reflection D G2 F / (4 cos cos); refraction by Walter et al. 2007, Eq. (21), (17), as radiance:
     f = |wo.h||wi.h| / (|wo.z||wi.z|) (1-F) G2 D / (eta wi.h + wo.h)^2, h along -(wo + eta wi), eta = n_i/n_o.
 A transmitting material seen from below is its point reflection: (-wo, -wm, -wi) with 1/eta.
+Histograms of slopes: histogram.py; densities of other samplers: samplers.py; the approximate masking of smith "spline": spline.py.
+Discrete distributions are their smooth ones: that is their mean over footprints.
 """
 import mpmath as mp
 
 import families
+import samplers
+import spline
+from histogram import Histogram
 from model import fresnel
 
 mp.mp.dps = 50
@@ -84,12 +89,20 @@ def triangle(A, M):
 
 class Bsdf:
     """Numbers by name that may be perturbed one by one. Those named by ABSOLUTE stand at 0 or 1 and are what no input
-    number is but every program has: the lengths of its unit vectors, and the entries of the composed map."""
+    number is but every program has: the lengths of its unit vectors, the entries of the composed map, weights and tails of a
+    spline, the place among cells of slopes, in float a table (below), and the components of a sampled wi, which is no input."""
 
-    ABSOLUTE = ("|wo|", "|wi|", *(f"d{i}" for i in range(9)))
+    SAMPLED = ("s0", "s1", "s2")
+    SPLINE = tuple(f"{what}{k}" for what in ("weight", "tail") for k in range(5))
+    CELLS = ("e0", "e1", "table")
+    ABSOLUTE = ("|wo|", "|wi|", *(f"d{i}" for i in range(9)), *SAMPLED, *SPLINE, *CELLS)
+    # z Lambda of a histogram in float is a table, right to 3e-5 of sigma for small smooth histograms (tabulated_smith.c), of
+    # which one of C c 2^-24 with C = 8 (tests/test_reference.py) is 1/63.
+    TABLE = 63
 
-    def __init__(self, material, wo, wm, wi):
-        self.material, self.ndf = material, material["ndf"]
+    def __init__(self, material, wo, wm, wi, sampled=False):
+        self.material, self.ndf = material, material["ndf"].removeprefix("discrete_")
+        self.spline, self.sampled = material.get("smith") == "spline", sampled
         x = {}
         for key in ("alpha", "gamma", "exponent", "alpha_x", "alpha_y", "rotation", "theta_x", "theta_y", "theta_z"):
             if key in material:
@@ -105,6 +118,10 @@ class Bsdf:
         x.update({"|wo|": ONE, "|wi|": ONE})
         if self.composed:
             x.update({f"d{i}": ZERO for i in range(9 if self.ndf == "ellipsoid" else 6)})
+        if self.ndf == "tabulated":
+            self.histogram = Histogram(material["histogram"]["weights"])
+            x.update({f"b{i}": mp.mpf(value) for i, value in enumerate(material["histogram"]["bounds"])})
+        x.update(dict.fromkeys((*self.SAMPLED * sampled, *self.SPLINE * self.spline, *self.CELLS * (self.ndf == "tabulated")), ZERO))
         self.kind, values = "none", material.get("fresnel", "none")
         if isinstance(values, dict):
             self.kind, values = next(iter(values.items()))
@@ -185,6 +202,12 @@ class Bsdf:
             sigma = (length(Au) * nA + dot(Au, self.An)) / (2 * nA * nA)  # Eq. (28) / Eq. (26)
             a, b, c, _, _ = upper(self.A)
             return sigma, sigma - w[2], (a * u[0] + b * u[1], c * u[1])
+        if self.ndf == "tabulated":
+            b = [self.x[f"b{i}"] for i in range(4)]
+            level, off = self.histogram.level(b, u), self.x["table"] * self.TABLE
+            if off:
+                off *= max(ZERO, level) + self.histogram.spread(b, u)
+            return self.histogram.part(b, u, 1) + off, self.histogram.part(b, u, -1) + level - w[2] + off, u[:2]
         z = abs(u[2])
         hidden = z * Lambda(self.ndf, *self.shape(), mp.sqrt(u[0] ** 2 + u[1] ** 2) / z, side)
         if u[2] > 0:
@@ -199,6 +222,11 @@ class Bsdf:
         if self.ndf == "ellipsoid":
             v = [dot(row, u) / self.det_A for row in self.cofactors]  # A^-T u
             return abs(self.det) / (mp.pi * abs(self.det_A) * length(self.An) * dot(v, v) ** 2)  # Eq. (1)
+        if self.ndf == "tabulated":
+            b = [self.x[f"b{i}"] for i in range(4)]
+            slope = [-u[k] / u[2] for k in range(2)]
+            slope = [s + self.x[f"e{k}"] * (abs(s) + max(abs(b[2 * k]), abs(b[2 * k + 1]))) for k, s in enumerate(slope)]
+            return abs(self.det) * self.histogram.density(b, slope) / u[2] ** 4
         square = dot(u, u)
         flat = u[0] ** 2 + u[1] ** 2
         return abs(self.det) / square ** 2 * families.density(self.ndf, *self.shape(), u[2] ** 2 / square, flat / square)
@@ -218,11 +246,11 @@ class Bsdf:
     def evaluate(self, Lambda):
         """All that is defined here, by name; Lambda(ndf, alpha, gamma, tau, side) supplies the Smith integral."""
         self.prepare()
-        self.density = ZERO  # at the half-vector
+        self.density = self.density_pdf = ZERO  # at the half-vector; of all that pdf is made of
         self.visible = ONE
         x = self.x
         o, m, i = (unit([x[f"{name}{k}"] for k in range(3)]) for name in ("wo", "wm", "wi"))
-        o, i = [e * x["|wo|"] for e in o], [e * x["|wi|"] for e in i]
+        o, i = [e * x["|wo|"] for e in o], [e * x["|wi|"] + x.get(f"s{k}", 0) for k, e in enumerate(i)]
         transmits = bool(self.material.get("transmission"))
         index = [x[f"n{k}"] for k in range(6) if f"n{k}" in x]
         if self.kind == "conductor":
@@ -236,6 +264,9 @@ class Bsdf:
         sigma, excess, po = self.sigma(o, Lambda, 0)
         self.visible = sigma / length(self.original(o)[0])  # the untransformed surface's, of a unit vector
         out["sigma"], out["Lambda"], out["D"] = sigma, excess / o[2], self.D(m)
+        if sigma == 0:  # a histogram that tilt turns away from the viewer entirely
+            out.update({"Dv": ZERO, "pdf": ZERO, **{f"f{k}": ZERO for k in range(3)}})
+            return out
         if m[2] > 0:
             out["G1"] = min(ONE, o[2] / sigma) if dot(o, m) > 0 else ZERO
             out["Dv"] = out["D"] * max(ZERO, dot(o, m)) / sigma
@@ -254,11 +285,13 @@ class Bsdf:
         G2 = self.G2(max(ZERO, out["Lambda"]), max(ZERO, more / abs(i[2])), po, pi, side > 0)
         F = fresnel(self.kind, index, oh)
         F = F if len(F) == 3 else F * 3
-        self.density = Do
+        self.density = self.density_pdf = Do
         if G2 is not None:
             out["G2"] = G2
         if side > 0:
             value, pdf, factor = Do / (4 * o[2] * i[2]), Do / (4 * sigma), F
+            if self.material.get("sampler", "visible") != "visible":
+                pdf, self.density_pdf = samplers.pdf(self, self.material["sampler"], o, i, h, sigma)
         else:
             jacobian = abs(ih) / (eta * ih + oh) ** 2
             value = oh * jacobian / (o[2] * abs(i[2])) * Do
@@ -267,4 +300,6 @@ class Bsdf:
         out.update({f"F{k}": F[k] for k in range(3)})
         if G2 is not None:
             out.update({f"f{k}": value * G2 * factor[k] for k in range(3)})
+            if self.sampled and out["pdf"]:  # as sampling has it, without a sum or quotient of what may be 0
+                out["weight"] = value * G2 * factor[0] * abs(i[2]) / out["pdf"]
         return out

@@ -8,6 +8,7 @@ c53 of a value is the sum over the input numbers of its relative change when tha
 import mpmath as mp
 
 import smith
+import spline
 
 ROUNDINGS = 8
 
@@ -29,8 +30,13 @@ def measure(case, digits=30):
         value, slopes, origin = base[side]
         return value * mp.exp(sum(k * mp.log(x / x0) for k, x, x0 in zip(slopes, point[1:], origin) if k and x0))
 
+    def approximate(ndf, alpha, gamma, tau, side):
+        return spline.Lambda(alpha, gamma, tau, lambda name: case.x[name])
+
+    if case.spline:
+        exact = nearby = approximate
     values = case.evaluate(exact)
-    density, visible = case.density, case.visible
+    kept = case.density, case.density_pdf, case.visible
     conditions = []
     with mp.workdps(40):
         for bits in (53, 24):
@@ -38,7 +44,7 @@ def measure(case, digits=30):
             moves = dict.fromkeys(values, mp.mpf(0))
             for name, number in case.x.items():
                 absolute = name in case.ABSOLUTE
-                if number == 0 and not absolute:
+                if (number == 0 and not absolute) or (name == "table" and bits == 53):
                     continue
                 most = dict.fromkeys(values, mp.mpf(0))
                 for sign in (1, -1):
@@ -51,5 +57,5 @@ def measure(case, digits=30):
                     moves[key] += most[key]
             conditions.append({key: 0.0 if moves[key] == 0 else float(mp.nstr(min(
                 moves[key] / abs(values[key]) / step if values[key] else mp.inf, mp.mpf(10) ** 99), 3)) for key in values})
-    case.density, case.visible = density, visible
+    case.density, case.density_pdf, case.visible = kept
     return values, *conditions

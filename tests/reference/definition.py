@@ -6,13 +6,17 @@
     int D cos dm = 1,  int max(0, w.m) D dm = sigma(w)        for every family, mirrored, skewed and tilted
     int pdf dwi = 1 over both sides                            where almost nothing is reflected down or refracted up
     f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2                      across a dielectric and on each side of it
+    int max(0, u_z - u_xy.s) P22 ds                            of a histogram, by its cells cut into many
+    int pdf dwi <= 1, = 1 where no sample is lost              for samplers other than visible normals
 """
 
 import mpmath as mp
 import numpy as np
 
+import samplers
 import smith
 from bsdf import Bsdf
+from histogram import Histogram
 
 MOVED = {"transform": [[0.8, 0.7], [0.3, -0.9]], "tilt": [0.9, -0.4]}
 MATERIALS = (
@@ -96,8 +100,38 @@ def reciprocity():
     assert worst < 1e-20
 
 
+def histograms():
+    bounds, weights, cut = [-0.7, 1.3, -0.4, 0.5], [[1, 0, 3], [2, 5, 0.5]], 400
+    x = (np.arange(3 * cut) + 0.5) / (3 * cut) * 2.0 - 0.7
+    y = (np.arange(2 * cut) + 0.5) / (2 * cut) * 0.9 - 0.4
+    mass = np.kron(np.array(weights), np.ones((cut, cut))) / np.sum(weights) / cut**2
+    h, worst = Histogram(weights), 0
+    for u in ([0.6, 0.3, 0.5], [-0.8, 0.5, 0.1], [0.2, -0.9, -0.3], [0.0, 0.5, 0.2], [0.0, 0.0, 1.0]):
+        seen = u[2] - u[0] * x[None, :] - u[1] * y[:, None]
+        for sign in (1, -1):
+            worst = max(worst, abs(float(h.part(bounds, u, sign)) - np.sum(np.maximum(0, sign * seen) * mass)))
+        worst = max(worst, abs(float(h.level(bounds, u)) - np.sum(seen * mass)))
+        deviation = float(np.sqrt(np.sum(seen**2 * mass) - np.sum(seen * mass) ** 2))
+        worst = max(worst, abs(float(h.spread(bounds, u)) - deviation))
+    print(f"histogram: worst {worst:.1e}")
+    assert worst < 1e-5  # midpoints of cells cut into 400 x 400
+
+
+def sum_of_samplers():
+    points, weights = hemisphere(40)
+    wo, skew = [0.5, 0.2, 0.7], {"transform": [[0.8, 0.7], [0.3, -0.9]]}
+    for sampler in samplers.ALL:
+        case = {"ndf": "ggx" if sampler == "bounded" else "gtr", "alpha": 0.4, "gamma": 2.0 if sampler == "bounded" else 1.5, "sampler": sampler, **skew}
+        with mp.workdps(16):
+            total = np.sum(weights * [float(Bsdf(case, wo, wo, [float(e) for e in p]).evaluate(smith_lambda)["pdf"]) for p in points])
+        print(f"{sampler}: int pdf = {total:.5f}")
+        assert abs(total - 1) < 5e-3 if sampler.startswith("folded") else 0.6 < total < 1.001
+
+
 def main():
     projected_areas()
+    histograms()
+    sum_of_samplers()
     reciprocity()
     sum_of_pdf()
 

@@ -67,6 +67,10 @@ def micronormal(rng, material, wo):
         A = ellipsoid_rows(material)
         u = [sum(A[k][i] * p[k] for k in range(3)) for i in range(3)]
         u = [e * math.copysign(1, u[2]) for e in u]
+    elif material["ndf"] == "tabulated":  # somewhere in a cell that is not empty
+        rows, (x0, x1, y0, y1) = material["histogram"]["weights"], material["histogram"]["bounds"]
+        j, i = rng.choice([(j, i) for j, row in enumerate(rows) for i, weight in enumerate(row) if weight > 0])
+        u = [-(x0 + (i + rng.random()) * (x1 - x0) / len(rows[0])), -(y0 + (j + rng.random()) * (y1 - y0) / len(rows)), 1.0]
     else:
         size, phi = width(material) * rng.choice((0.0, 0.5, 1.0, 3.0, 30.0)), rng.uniform(0, 2 * math.pi)
         u = [-size * math.cos(phi), -size * math.sin(phi), 1.0]

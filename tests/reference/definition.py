@@ -111,17 +111,17 @@ def histograms():
         for sign in (1, -1):
             worst = max(worst, abs(float(h.part(bounds, u, sign)) - np.sum(np.maximum(0, sign * seen) * mass)))
         worst = max(worst, abs(float(h.level(bounds, u)) - np.sum(seen * mass)))
-        deviation = float(np.sqrt(np.sum(seen**2 * mass) - np.sum(seen * mass) ** 2))
+        deviation = float(np.sqrt(max(0, np.sum(seen**2 * mass) - np.sum(seen * mass) ** 2)))
         worst = max(worst, abs(float(h.spread(bounds, u)) - deviation))
     print(f"histogram: worst {worst:.1e}")
     assert worst < 1e-5  # midpoints of cells cut into 400 x 400
 
 
 def sum_of_samplers():
-    points, weights = hemisphere(40)
+    points, weights = hemisphere(32)
     wo, skew = [0.5, 0.2, 0.7], {"transform": [[0.8, 0.7], [0.3, -0.9]]}
     for sampler in samplers.ALL:
-        case = {"ndf": "ggx" if sampler == "bounded" else "gtr", "alpha": 0.4, "gamma": 2.0 if sampler == "bounded" else 1.5, "sampler": sampler, **skew}
+        case = {"ndf": "ggx", "alpha": 0.4, "sampler": sampler, **skew}
         with mp.workdps(16):
             total = np.sum(weights * [float(Bsdf(case, wo, wo, [float(e) for e in p]).evaluate(smith_lambda)["pdf"]) for p in points])
         print(f"{sampler}: int pdf = {total:.5f}")

@@ -47,6 +47,10 @@ def ask_one(program, questions, precision):
     return answers
 
 
+def bits(precision):
+    return bound.FORMATS[precision][0]
+
+
 def ulp(value, bits):
     return 2.0 ** max(math.frexp(value)[1] - bits, -1074 if bits == 53 else -149)
 

@@ -6,13 +6,20 @@ Of each draw: numbers are finite, none is negative, wi is a unit vector, and the
 less, at most 1, of visible normals however they are drawn, and over 7/10 where 3/10 are uniform; F < 1 - F is spent on
 the choice of a side. Radiance that is refracted carries 1/eta^2. A walk is worth at most that too. D cos and what is mixed with
 it have no bound. Compensation draws each lobe as likely as it sends light on: no simple bound either.
-Of single scattering, two draws of each material become questions: f, pdf and weight of the drawn direction, exactly.
+Of single scattering, two draws of each material become questions: f, pdf and weight of the drawn direction, exactly. wi and wm say
+the same twice, each rounded: how far the values are apart that both have counts among what rounding may move (a lobe narrower
+than 2^-p hides between two neighbours of wi).
 """
 import json
 import math
 import random
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
+
+import mpmath as mp
+import smith  # of tests/reference
+from bsdf import Bsdf, dot, unit
+from conditioning import ROUNDINGS
 
 from . import more
 from .grid import law, point
@@ -80,6 +87,31 @@ def problems(material, wo, s, precision):
     if bounds and max(s["weight"]) > bounds[s["wi"][2] * wo[2] < 0] * (1 + 32 * UNIT[precision]):
         found.append(f"weight {max(s['weight'])!r} above {bounds[s['wi'][2] * wo[2] < 0]}")
     return found
+
+
+def sent(question):
+    """Where wm sends wo, exactly; None: nowhere."""
+    o, m, i = (unit([mp.mpf(x) for x in question[name]]) for name in ("wo", "wm", "wi"))
+    c = dot(o, m)
+    if o[2] * i[2] > 0:
+        return [2 * c * p - q for p, q in zip(m, o)]
+    eta = mp.mpf(question["material"]["fresnel"]["dielectric"])
+    eta = 1 / eta if o[2] < 0 else eta
+    square = 1 - (1 - c * c) / (eta * eta)
+    return [(c / eta - mp.sqrt(square)) * p - q / eta for p, q in zip(m, o)] if square > 0 else None
+
+
+def doubt(question, line, bits):
+    """Adds to how ill-posed each exact value is what moves it from wi to where wm sends wo."""
+    wi, key_of_c = sent(question), f"c{bits}"
+    found = {} if wi is None else Bsdf(question["material"], question["wo"], question["wm"], wi, sampled=True).evaluate(
+        lambda *where: smith.Lambda(*where[:-1], digits=20))
+    for key, value in line["expect"].items():
+        value = mp.mpf(value)
+        if value and key in line[key_of_c]:
+            moved = abs(found[key] / value - 1) * 2**bits / ROUNDINGS if key in found else mp.inf
+            line[key_of_c][key] = float(min(mp.mpf(10) ** 99, line[key_of_c][key] + moved))
+    return line
 
 
 def examine(program, count, precision):

@@ -9,7 +9,7 @@ import math
 import random
 
 from . import measure, more
-from .grid import law, point
+from .grid import clear, law, point
 
 SEED = 20261128
 FOOTPRINTS, RARE = 400, 20
@@ -21,6 +21,8 @@ def scattering(count):
     for number in range(count):
         kind = ("compensated", "random_walk")[number % 2]
         m = law(rng) if kind == "random_walk" else more.rough(rng, ("ggx", "beckmann", "gtr", "std"))
+        while clear(m):  # a mirror scatters singly
+            m = law(rng)
         question, _, name = point(rng, {**m, "multiple_scattering": kind}, tilts=(0,) if kind == "compensated" else (0, 10, 60))
         if kind == "random_walk":
             question["material"].pop("masking", None)

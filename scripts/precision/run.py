@@ -54,7 +54,7 @@ def measure_all(program, points, folder, say):
     axes = [{"kind": "families", **where} for where in axes]
     known = exact.answers(list(questions), folder, say)
     say(f"exact answers after {time.monotonic() - start:.0f} s")
-    drawn, checks = draws(program, max(16, points // 20), folder, say)
+    drawn, checks = draws(program, max(8, points // 20), folder, say)
     say(f"draws after {time.monotonic() - start:.0f} s")
     records, failures, spline = [], [], None
     for precision in tables.FORMATS:

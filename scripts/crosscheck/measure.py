@@ -42,8 +42,10 @@ def bits(h, alpha, m, views, folder, label, lights=None, field=False, fine=FINE)
     """Packed bits [direction, i, j, L|U, point] under M from the lights (M v unless given), and what they come down to."""
     h, quantised = heightfield.quantise(h)
     directions = [maps.carried(m, v) for v in views]
-    surface = povray.height_field(h, quantised, folder / f"{label}.pgm") if field else povray.mesh2(h, m)
-    text = povray.scene(surface, h, m, directions if lights is None else lights, povray.tiles(h, views))
+    turn = povray.upright(m)
+    surface = povray.height_field(h, quantised, folder / f"{label}.pgm") if field else povray.mesh2(h, turn @ m)
+    around = [povray.turned(turn, light) for light in (directions if lights is None else lights)]
+    text = povray.scene(surface, h, turn @ m, around, povray.tiles(h, views))
     n = len(h)
     image, used = povray.run(text, folder, label, 2 * n * fine, n * fine)
     seen = povray.visibility(image, n, len(views))

@@ -18,9 +18,16 @@ FLAT = 30
 CODE = ("0.05+0.45*(x+1)", "0.05+0.45*(y+1)", "0.95")
 
 
+def periods(h, m, view):
+    """Periods around the middle one: as the view needs, in the original's plane, and for reflected rays that rise by 1 in
+    FLAT; flatter ones may leave over the border below the highest peak, and count as lost if they go down there."""
+    return povray.tiles(h, [[*(np.linalg.inv(m) @ view[:2]), view[2]], [FLAT, 0, 1]])
+
+
 def scene(h, m, view, index, level):
     """The period as mirrors, seen along the view in the space of the transformed surface."""
-    n, v = len(h), np.asarray(view)
+    around, turn = periods(h, m, view), povray.upright(m)
+    n, v, m = len(h), povray.turned(turn, view), turn @ m
     x, y = m @ [n, 0], m @ [0, n]
     centre = np.array([*(x + y) / 2, 0.0])
     vector = povray.vector
@@ -30,11 +37,9 @@ def scene(h, m, view, index, level):
             "sky_sphere { pigment { average pigment_map {"]
     for code, colour in zip(CODE, ("<3,0,0>", "<0,3,0>", "<0,0,3>")):
         text.append(f"[1 function {{ select(z, 0, {code}) }} color_map {{ [0 rgb 0] [1 rgb {colour}] }}]")
-    text += ["} } }", "#declare Period = object { %s\n  texture { pigment { color rgb 0 } finish { ambient 0 emission 0 diffuse 0 "
+    # the sky turns with the surface: its code stays that of the direction before
+    text += ["} } matrix <%s> }" % ",".join(povray.number(a) for a in (*turn.T[0], 0, *turn.T[1], 0, 0, 0, 1, 0, 0, 0)), "#declare Period = object { %s\n  texture { pigment { color rgb 0 } finish { ambient 0 emission 0 diffuse 0 "
              "reflection { 0 1 fresnel on } } } interior { ior %s } }" % (povray.mesh2(h, m), povray.number(index))]
-    # Periods around the middle one: as the view needs, in the original's plane, and for reflected rays that rise by 1 in
-    # FLAT; flatter ones may leave over the border below the highest peak, and count as lost if they go down there.
-    around = povray.tiles(h, [[*(np.linalg.inv(m) @ v[:2]), v[2]], [FLAT, 0, 1]])
     for a in range(-around, around + 1):
         for b in range(-around, around + 1):
             text.append("object { Period translate %s }" % vector([*(a * x + b * y), 0]))

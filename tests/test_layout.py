@@ -3,7 +3,8 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """The layout is the architecture: which room may see which, and the house rules of every source file.
 
-core/bsdf includes nothing of any other room; core/surface sees core/bsdf at most; core/render sees materials only through plugin/'s headers; plugin sees
+core/bsdf includes nothing of any other room; core/surface sees core/bsdf at most, core/tension its
+singular values; core/render sees materials only through plugin/'s headers; plugin sees
 core; scripts are not needed to build.
 """
 import pathlib
@@ -22,7 +23,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 ALLOWED = {
     "core/bsdf/": ("core/bsdf/",),
     "core/surface/": ("core/surface/", "core/bsdf/"),
-    "core/render/": ("core/render/", "core/surface/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h"),
+    "core/tension/": ("core/tension/", "core/bsdf/singular.h"),
+    "core/render/": ("core/render/", "core/surface/", "core/tension/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h"),
     "plugin/": ("plugin/", "musurf_plugin.h", "musurf_probe.h", "core/bsdf/"),
     "tests/": ("core/", "plugin/", "tests/"),
 }

@@ -24,6 +24,7 @@ static const struct {
     {"render", mu_command_render, "an image of a scene file"},
     {"check", mu_command_check, "the numerical validation: random materials, and those of scenes"},
     {"surface", mu_command_surface, "explicit microsurfaces: make heightfields, measure what theory says of them, write meshes"},
+    {"tension", mu_command_tension, "how a mesh deforms, as the linear map of its microsurface"},
     {"info", mu_command_info, "distributions, parameters, build"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

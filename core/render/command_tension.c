@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* command_tension.c: `musurf tension`, how a mesh deforms, as the M of its microsurface. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/render/command.h"
+#include "core/render/error.h"
+#include "core/render/options.h"
+#include "core/render/output_stream.h"
+#include "core/render/tension_files.h"
+
+enum { OUTPUT, PICTURE, JSON };
+
+static const mu_option options[] = {
+    {"o", "FILE.ply", "the deformed mesh with the vertex properties m00 m01 m10 m11"},
+    {"picture", "FILE.svg", "ellipses that circles become, over the texture coordinates"},
+    {"json", NULL, "print M of every face and vertex, not the summary only"},
+    {NULL, NULL, NULL}};
+
+static const mu_usage usage = {
+    "tension", "REST DEFORMED [-o FILE.ply] [--picture FILE.svg] [--json]",
+    "Compares a mesh at rest with the same mesh deformed (OBJ, PLY, glTF): M = [m00 m01; m10 m11] = D R^-1 "
+    "maps the\n"
+    "tangent plane at rest to the deformed one, both seen with the texture's u direction as +x and the "
+    "normal as +z.\n",
+    options,
+    "Both files need the same vertices and faces in the same order; texture coordinates may differ, or be "
+    "missing in\n"
+    "one. Vertices have the mean of their faces (of log sqrt(M^T M), weighted by area and angle at rest), "
+    "one for each\n"
+    "chart of the texture. Rigid motions give M = 1.\n"
+    "out, one line of JSON:\n"
+    "  \"summary\"   numbers of \"faces\", \"triangles\", \"vertices\", \"seams\"; least and largest "
+    "\"stretch\" and "
+    "change of\n"
+    "              \"area\"; numbers of triangles \"rest_flat\", \"deformed_flat\" (no area), \"uv_none\", "
+    "\"uv_flat\",\n"
+    "              \"uv_once\" (in one file), \"uv_changed\", \"uv_mirrored\", \"inverted\"; "
+    "\"points_without\"\n"
+    "  --json:\n"
+    "  \"faces\"     [m00, m01, m10, m11] of each face in the file's order; of a polygon, the mean of its "
+    "triangles\n"
+    "  \"vertices\"  the same of each vertex in the file's order, on a seam of its first chart\n"
+    "  \"seams\"     of the further charts: \"vertex\" (from 0), \"uv\", \"m\"\n"
+    "The PLY has the vertices of further charts at its end. A warning counts triangles that were not "
+    "healthy.\n"};
+
+typedef struct mu_asked {
+    const char *rest, *deformed, *output, *picture;
+    int json;
+} mu_asked;
+
+static _Bool write_files(const mu_asked *asked, const mu_deformation *d, mu_error *error) {
+    mu_output_stream stream;
+    if (asked->output) {
+        if (!mu_output_stream_open(&stream, asked->output, error)) return 0;
+        if (!mu_tension_write_ply(d, stream.file)) {
+            mu_output_stream_discard(&stream);
+            return mu_fail(error, "%s: not enough memory", asked->output);
+        }
+        if (!mu_output_stream_commit(&stream, error)) return 0;
+    }
+    if (!asked->picture) return 1;
+    if (!mu_tension_can_draw(d, error) || !mu_output_stream_open(&stream, asked->picture, error)) return 0;
+    mu_tension_draw(d, stream.file);
+    return mu_output_stream_commit(&stream, error);
+}
+
+static int answer(const mu_asked *asked) {
+    mu_error error = {.text = ""};
+    mu_deformation d;
+    char line[768];
+    if ((asked->output && !mu_output_check(asked->output, &error)) ||
+        (asked->picture && !mu_output_check(asked->picture, &error)) ||
+        !mu_deformation_read(&d, asked->rest, asked->deformed, &error))
+        return mu_refuse(&usage, "%s", error.text);
+    if (mu_deformation_describe(&d, line, sizeof line)) mu_warn(&error, "%s: %s", asked->deformed, line);
+    const _Bool good = write_files(asked, &d, &error);
+    if (good) mu_tension_write_json(&d, asked->json, stdout);
+    mu_deformation_free(&d);
+    return good ? MU_EXIT_OK : mu_refuse(&usage, "%s", error.text);
+}
+
+int mu_command_tension(int argc, char **argv) {
+    mu_asked asked = {.json = 0};
+    int met;
+    mu_options given = mu_options_begin(&usage, argc, argv);
+    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
+        if (met == OUTPUT) {
+            asked.output = given.value;
+        } else if (met == PICTURE) {
+            asked.picture = given.value;
+        } else if (met == JSON) {
+            asked.json = 1;
+        } else if (met != MU_OPTIONS_OPERAND) {
+            return mu_options_exit(met);
+        } else if (asked.rest && asked.deformed) {
+            return mu_refuse(&usage, "REST and DEFORMED, but \"%s\" is a third", given.value);
+        } else {
+            *(asked.rest ? &asked.deformed : &asked.rest) = given.value;
+        }
+    }
+    if (!asked.deformed) return mu_refuse(&usage, "two mesh files are needed: REST and DEFORMED");
+    return answer(&asked);
+}

@@ -22,6 +22,7 @@
 typedef struct mu_sum { /* of a point */
     mu_stretch_log log;
     double weight;
+    _Bool differ; /* not all have the first one's M: else the mean is that, exactly */
 } mu_sum;
 
 typedef struct mu_build {
@@ -83,9 +84,13 @@ static void add_normals(mu_build *b, const uint32_t *corner, const mu_tension_fa
     }
 }
 
-static void add_to_point(mu_sum *sum, const mu_stretch_log *log, double weight) {
-    sum->log.xx += weight * log->xx, sum->log.xy += weight * log->xy, sum->log.yy += weight * log->yy;
-    sum->log.turn_x += weight * log->turn_x, sum->log.turn_y += weight * log->turn_y;
+/* `m` holds the first one's M meanwhile. */
+static void add_to_sum(mu_sum *sum, double m[4], const double added[4], double weight) {
+    const mu_stretch_log log = mu_stretch_log_of(added);
+    if (!(sum->weight > 0)) memcpy(m, added, 4 * sizeof *m);
+    for (int k = 0; k < 4; k++) sum->differ |= m[k] != added[k];
+    sum->log.xx += weight * log.xx, sum->log.xy += weight * log.xy, sum->log.yy += weight * log.yy;
+    sum->log.turn_x += weight * log.turn_x, sum->log.turn_y += weight * log.turn_y;
     sum->weight += weight;
 }
 
@@ -98,9 +103,9 @@ static _Bool sum_up(mu_build *b) {
         for (size_t k = 0; k < 3; k++)
             if (!point_of(b, t, k, face.chart, &point[k])) return 0;
         if (!face.usable) continue;
-        const mu_stretch_log log = mu_stretch_log_of(face.m);
         memcpy(out->face + 4 * (size_t)t, face.m, sizeof face.m);
-        for (size_t k = 0; k < 3; k++) add_to_point(&b->sums[point[k]], &log, face.weight[k]);
+        for (size_t k = 0; k < 3; k++)
+            add_to_sum(&b->sums[point[k]], out->point[point[k]].m, face.m, face.weight[k]);
     }
     return 1;
 }
@@ -108,6 +113,7 @@ static _Bool sum_up(mu_build *b) {
 /* The mean; false if there is nothing to take it of, which leaves M. */
 static _Bool mean(const mu_sum *sum, double m[4]) {
     if (!(sum->weight > 0)) return 0;
+    if (!sum->differ) return 1;
     const double w = sum->weight;
     const mu_stretch_log log = {sum->log.xx / w, sum->log.xy / w, sum->log.yy / w, sum->log.turn_x / w,
                                 sum->log.turn_y / w};
@@ -136,12 +142,11 @@ static void finish_faces(mu_build *b) {
             continue;
         }
         mu_sum all = {.weight = 0};
+        m[0] = m[3] = 1;
         for (size_t k = 0; k < 3; k++) {
             if (!(b->sums[point[k]].weight > 0)) continue;
-            const mu_stretch_log log = mu_stretch_log_of(b->out->point[point[k]].m);
-            add_to_point(&all, &log, 1);
+            add_to_sum(&all, m, b->out->point[point[k]].m, 1);
         }
-        m[0] = m[3] = 1;
         mean(&all, m);
     }
 }

@@ -40,7 +40,7 @@ static void test_jacobian_is_the_derivative_of_the_map(void **state) {
         const mu_material material = {.jacobian = {MU_JACOBIAN_POWER_SHEAR, 2, 5},
                                       .transform = {1, 2, -0.5f, 3}};
         float m[4];
-        mu_shading_jacobian(&material, &hit, &upright, m);
+        mu_shading_jacobian(&material, &hit, &upright, material.transform, m);
         for (int column = 0; column < 2; column++) {
             const double h = 1e-4;
             const double step[2] = {h * (double)material.transform[column],
@@ -60,7 +60,7 @@ static void test_jacobian_on_a_square_plate(void **state) {
     const mu_hit hit = {.uv = {0.5f, 0.9f}, .dpdu = {7, 0, 0}, .dpdv = {0, 7, 0}};
     const mu_material material = {.jacobian = {MU_JACOBIAN_POWER_SHEAR, 2, 5}, .transform = {1, 0, 0, 1}};
     float m[4];
-    mu_shading_jacobian(&material, &hit, &upright, m);
+    mu_shading_jacobian(&material, &hit, &upright, material.transform, m);
     assert_true(m[0] == 1 && m[1] == 0 && m[3] == 1);
     assert_near(m[2], 10 * 0.0625, 1e-7); /* 10 u^4 */
 }
@@ -78,7 +78,7 @@ static void test_jacobian_without_usable_coordinates(void **state) {
     const mu_hit *const hits[4] = {&none, &flat, &edge, &left};
     for (int k = 0; k < 4; k++) {
         float m[4];
-        mu_shading_jacobian(materials[k], hits[k], &upright, m);
+        mu_shading_jacobian(materials[k], hits[k], &upright, materials[k]->transform, m);
         for (int i = 0; i < 4; i++) assert_true(m[i] == (float)(i + 1));
     }
 }

@@ -4,7 +4,7 @@
  * explain.c: one JSON object with
  *   features, left_out   names from features.h; what each left-out one would have brought
  *   materials            of each: plan, bytes of closure, tables and the whole, lobes, and what it left out
- *   meshes               of each: vertices, triangles, whether tangents were made
+ *   meshes               of each: vertices, triangles, whether tangents were made and a mesh at rest read
  *   lights               bytes of the sampling table and the image
  *   plugins, libraries   files opened by name; shared objects in the process
  */
@@ -52,9 +52,9 @@ static json_t *material(const mu_named_material *named) {
 }
 
 static json_t *mesh(const mu_mesh *m) {
-    return json_pack("{s:s, s:I, s:I, s:b, s:b}", "name", m->name, "vertices", (json_int_t)m->vertex_count,
+    return json_pack("{s:s, s:I, s:I, s:b, s:b, s:b}", "name", m->name, "vertices", (json_int_t)m->vertex_count,
                      "triangles", (json_int_t)m->triangle_count, "uvs", m->uvs != NULL, "tangents",
-                     m->tangents != NULL);
+                     m->tangents != NULL, "tension", m->tension != NULL);
 }
 
 /* The dynamic linker's own list: the file names of all shared objects now in the process. */

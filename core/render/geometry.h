@@ -20,6 +20,7 @@ typedef struct mu_hit {
     mu_frame frame; /* shading frame: n interpolated, t the continuous tangent made orthogonal to n */
     float uv[2];
     mu_vec3 dpdu, dpdv; /* world-space derivatives by texture coordinates; zero if there are no UVs */
+    float tension[4]; /* M of the deformation in `frame`, of a mesh that has one (scene.h); else not set */
     float distance;
     float error; /* how far p may lie from the surface that rays are tested against, along ng: a bound */
     uint32_t object;

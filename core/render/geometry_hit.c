@@ -29,8 +29,9 @@
 typedef struct mu_local {
     mu_dvec3 p, ng, n, t, dpdu, dpdv; /* not normalised; t zero if there is none */
     double u, v;
-    double edge; /* longest edge E of what was tested against; 0: tested against exactly */
-    double test; /* error of the ray's test in units of u, in the space in which it is done */
+    float *tension; /* of the hit */
+    double edge;    /* longest edge E of what was tested against; 0: tested against exactly */
+    double test;    /* error of the ray's test in units of u, in the space in which it is done */
 } mu_local;
 
 static double largest(mu_dvec3 a) {
@@ -90,18 +91,32 @@ static mu_dvec3 blend(const float *values, size_t stride, const uint32_t *corner
     return sum;
 }
 
+/* Equal matrices give the same one exactly. Where b is on the other side of t than by the triangle's winding, y has the
+ * other sign. */
+static void blend_tension(const float *tension, const uint32_t *corner, double u, double v, _Bool turned,
+                          float out[4]) {
+    const float *m0 = tension + 4 * (size_t)corner[0], *m1 = tension + 4 * (size_t)corner[1],
+                *m2 = tension + 4 * (size_t)corner[2];
+    for (int k = 0; k < 4; ++k) {
+        const double first = (double)m0[k];
+        const float m = (float)(first + u * ((double)m1[k] - first) + v * ((double)m2[k] - first));
+        out[k] = turned && (k == 1 || k == 2) ? -m : m;
+    }
+}
+
 static void on_triangle(const mu_mesh *mesh, const mu_map *map, const mu_found *found, mu_local *local) {
     const uint32_t *corner = mesh->indices + 3 * (size_t)found->primitive;
     const double u = (double)found->u, v = (double)found->v;
     const double weight[3] = {1 - u - v, u, v}, equal[3] = {1, 1, 1};
+    double outside = 1;
     mu_dvec3 p[3];
     for (int i = 0; i < 3; ++i) p[i] = mu_dfloat(mesh->positions + 3 * (size_t)corner[i]);
     const mu_dvec3 e1 = mu_dsub(p[1], p[0]), e2 = mu_dsub(p[2], p[0]);
     local->p = mu_dadd(p[0], mu_dadd(mu_dscale(e1, u), mu_dscale(e2, v)));
     local->ng = local->n = mu_dcross(e1, e2);
     if (mesh->normals) {
-        if (mu_ddot(blend(mesh->normals, 3, corner, equal), local->ng) < 0)
-            local->ng = mu_dscale(local->ng, -1);
+        outside = mu_ddot(blend(mesh->normals, 3, corner, equal), local->ng) < 0 ? -1 : 1;
+        local->ng = mu_dscale(local->ng, outside);
         local->n = blend(mesh->normals, 3, corner, weight);
     }
     local->u = local->v = 0;
@@ -119,6 +134,8 @@ static void on_triangle(const mu_mesh *mesh, const mu_map *map, const mu_found *
             local->dpdv = mu_dscale(mu_dsub(mu_dscale(e2, du1), mu_dscale(e1, du2)), 1 / area);
         }
     }
+    if (mesh->tension)
+        blend_tension(mesh->tension, corner, u, v, (map->determinant < 0) != (outside < 0), local->tension);
     local->t = mesh->tangents ? blend(mesh->tangents, 4, corner, weight) : local->dpdu;
     if (found->instance) /* tested in the mesh's own space */
         set_test_error(local, e1, e2);
@@ -158,7 +175,8 @@ static _Bool on_grid(const mu_grid *grid, double u, double v) {
 void mu_hit_fill(const struct mu_geometry *geometry, const mu_ray *ray, const mu_found *found, mu_hit *hit) {
     const mu_object *object = &geometry->scene->objects[found->object];
     const mu_map *map = &geometry->maps[found->object];
-    mu_local local; /* each shape fills all of it */
+    mu_local local; /* each shape fills the rest of it */
+    local.tension = hit->tension;
     if (object->shape == MU_RECTANGLE)
         on_rectangle(object, map, found, &local);
     else if (object->shape == MU_SPHERE)

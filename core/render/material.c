@@ -68,12 +68,17 @@ static _Bool read_jacobian(mu_jacobian *jacobian, const mu_place *place, mu_erro
            mu_place_number(&exponent, 1, 1e3, &jacobian->exponent, error);
 }
 
-/* The Jacobian J makes "transform" vary: the renderer keeps the constant part and pushes J times it through
+static const musurf_param *find_varying_transform(const musurf_material_type *type) {
+    const musurf_param *p = mu_type_find(type, "transform");
+    return p && p->kind == MUSURF_MATRIX && (p->flags & MUSURF_MAY_VARY) ? p : NULL;
+}
+
+/* A Jacobian or a tension makes "transform" vary: the renderer keeps the constant part and pushes its product through
  * slots 0 to 3. */
 static _Bool vary_transform(mu_material *material, mu_settings *settings, const mu_place *place,
                             mu_error *error) {
-    const musurf_param *p = mu_type_find(material->type, "transform");
-    if (!p || p->kind != MUSURF_MATRIX || !(p->flags & MUSURF_MAY_VARY)) {
+    const musurf_param *p = find_varying_transform(material->type);
+    if (!p) {
         const mu_place member = mu_place_member(place, "jacobian");
         return mu_place_fail_key(&member, error, "%s has no transform that may vary", material->type->id);
     }
@@ -87,7 +92,7 @@ static _Bool vary_transform(mu_material *material, mu_settings *settings, const 
         for (int i = 0; i < 4; i++)
             if (fabs(setting->values[i]) > 1e18) /* squares of what shading multiplies must be floats */
                 return mu_settings_fail(place, "transform", error,
-                                        "with a jacobian, entries must be within 1e18");
+                                        "with a jacobian or a tension, entries must be within 1e18");
     } else {
         setting = mu_settings_add(settings, p);
     }
@@ -142,7 +147,8 @@ static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_
     return compile(material, settings, place, error) && describe(material, place, error);
 }
 
-_Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
+static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
+                           mu_error *error) {
     static const char *const reserved[] = {"material", "jacobian", NULL};
     *material = (mu_material){.transform = {1, 0, 0, 1}};
     if (!json_is_object(place->value)) return mu_place_only(place, reserved, error);
@@ -159,13 +165,22 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
     read_transform(material, &settings);
     material->digest = digest_of(&settings);
     _Bool good = 1;
-    if (jacobian.value)
-        good = read_jacobian(&material->jacobian, &jacobian, error) &&
-               vary_transform(material, &settings, place, error);
+    material->tension = deforming && find_varying_transform(material->type);
+    if (jacobian.value) good = read_jacobian(&material->jacobian, &jacobian, error);
+    if (jacobian.value || material->tension) good = good && vary_transform(material, &settings, place, error);
     good = good && compile_all(material, &settings, place, error);
     mu_settings_free(&settings);
     if (!good) mu_material_free(material);
     return good;
+}
+
+_Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
+    return read_material(material, plugins, place, 0, error);
+}
+
+_Bool mu_material_read_deforming(mu_material *material, mu_plugins *plugins, const mu_place *place,
+                                 mu_error *error) {
+    return read_material(material, plugins, place, 1, error);
 }
 
 void mu_material_free(mu_material *material) {

@@ -37,7 +37,8 @@ typedef struct mu_material {
     musurf_plan plan;
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
     uint64_t digest;      /* of the grids among its settings, which the document may only name */
-    float transform[4];   /* the constant "transform", onto which the Jacobian goes: M = J transform */
+    float transform[4];   /* the constant "transform", onto which the others go: M = J T transform */
+    _Bool tension;        /* T transform is pushed through slots[0..3] at each hit: T of the mesh's deformation */
     _Bool footprints;     /* the footprint is pushed through slots[4..9] at each hit */
     _Bool one_footprint;  /* the material has one of its own */
 } mu_material;
@@ -45,6 +46,8 @@ typedef struct mu_material {
 /* The material described by the object at `place`. The plugin's own message about a parameter is put into the
  * error with that parameter's place in the document. */
 _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error);
+/* The same for an object that deforms. If its type has no transform that may vary, `tension` is not set. */
+_Bool mu_material_read_deforming(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error);
 void mu_material_free(mu_material *material);
 
 #endif

@@ -128,8 +128,7 @@ static _Bool add_vertices(mu_gather *gather, const struct aiMesh *part, const mu
     return 1;
 }
 
-/* Zero area to within what rounding the corners to float leaves of it. */
-static _Bool is_degenerate(const mu_mesh *mesh, const uint32_t *corner) {
+_Bool mu_mesh_is_flat(const mu_mesh *mesh, const uint32_t corner[3]) {
     mu_dvec3 p[3];
     for (int k = 0; k < 3; ++k) p[k] = mu_dfloat(mesh->positions + 3 * (size_t)corner[k]);
     const mu_dvec3 a = mu_dsub(p[1], p[0]), b = mu_dsub(p[2], p[0]), c = mu_dsub(p[2], p[1]);
@@ -152,7 +151,7 @@ static _Bool add_part(mu_gather *gather, const struct aiMesh *part, const mu_map
             corner[map->determinant < 0 ? 2 - k : k] =
                 base + face->mIndices[k]; /* mirrored: keep the outside */
         }
-        if (is_degenerate(mesh, corner))
+        if (mu_mesh_is_flat(mesh, corner))
             ++gather->notes.dropped;
         else
             ++mesh->triangle_count;
@@ -238,6 +237,8 @@ void mu_mesh_free(mu_mesh *mesh) {
     free(mesh->normals);
     free(mesh->uvs);
     free(mesh->tangents);
+    free(mesh->tension);
+    free(mesh->rest);
     free(mesh->indices);
     memset(mesh, 0, sizeof *mesh);
 }

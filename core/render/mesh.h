@@ -15,6 +15,10 @@ typedef struct mu_mesh_notes {
 /* Fails on files that cannot be read, empty meshes and non-finite vertices. Missing normals are computed (smooth,
  * angle-weighted). */
 _Bool mu_mesh_read(mu_mesh *mesh, const char *file, mu_mesh_notes *notes, mu_error *error);
+/* The same from two files of one mesh (deformation.h), the second deformed: with the tension at its vertices, and texture
+ * coordinates, which it needs, those of the mesh at rest if it has none. `found`: a line about unhealthy triangles. */
+_Bool mu_mesh_read_deformed(mu_mesh *mesh, const char *rest, const char *deformed, mu_mesh_notes *notes, char *found,
+                            size_t size, mu_error *error);
 /* Continuous per-vertex tangents: along dp/du where there are UVs, else a smooth field over the surface. */
 _Bool mu_mesh_make_tangents(mu_mesh *mesh, mu_error *error);
 void mu_mesh_free(mu_mesh *mesh);

@@ -17,6 +17,8 @@ uint32_t mu_mesh_run(const mu_mesh *mesh, _Bool with_normals, const uint32_t *or
 /* The angle of triangle corner k, in radians. p: the three corners. */
 double mu_corner_angle(const mu_dvec3 p[3], int k);
 void mu_mesh_corners(const mu_mesh *mesh, uint32_t triangle, mu_dvec3 p[3]);
+/* Zero area to within what rounding the corners to float leaves of it. */
+_Bool mu_mesh_is_flat(const mu_mesh *mesh, const uint32_t corner[3]);
 /* Computes the normals that are zero: smooth over all triangles that meet at the place, weighted by angle. */
 _Bool mu_mesh_fill_normals(mu_mesh *mesh, mu_error *error);
 

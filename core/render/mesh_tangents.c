@@ -74,13 +74,15 @@ static _Bool split_mirrored(mu_mesh *mesh, signed char **signs) {
     for (uint32_t i = 0; i < old; ++i)
         if (seen[i] == 3) twin[i] = old + extra++;
     if (extra && !(grow(&mesh->positions, 3, old, extra) && grow(&mesh->normals, 3, old, extra) &&
-                   grow(&mesh->uvs, 2, old, extra)))
+                   grow(&mesh->uvs, 2, old, extra) && grow(&mesh->tension, 4, old, extra)))
         goto fail;
     for (uint32_t i = 0; i < old; ++i) {
         if (!twin[i]) continue;
         memcpy(mesh->positions + 3 * (size_t)twin[i], mesh->positions + 3 * (size_t)i, 3 * sizeof(float));
         memcpy(mesh->normals + 3 * (size_t)twin[i], mesh->normals + 3 * (size_t)i, 3 * sizeof(float));
         memcpy(mesh->uvs + 2 * (size_t)twin[i], mesh->uvs + 2 * (size_t)i, 2 * sizeof(float));
+        if (mesh->tension)
+            memcpy(mesh->tension + 4 * (size_t)twin[i], mesh->tension + 4 * (size_t)i, 4 * sizeof(float));
     }
     for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; ++i)
         if (sign[i / 3] < 0 && twin[mesh->indices[i]]) mesh->indices[i] = twin[mesh->indices[i]];

@@ -18,7 +18,7 @@
 typedef struct mu_gathered {
     const struct aiScene *scene;
     mu_polygons *out;
-    _Bool any_uvs;
+    _Bool any_uvs, any_normals;
     mu_error *error;
 } mu_gathered;
 
@@ -27,6 +27,7 @@ static void count(mu_gathered *g, const struct aiNode *node, size_t total[3]) {
         const struct aiMesh *part = g->scene->mMeshes[node->mMeshes[i]];
         total[0] += part->mNumVertices;
         g->any_uvs |= part->mTextureCoords[0] != NULL;
+        g->any_normals |= part->mNormals != NULL;
         for (unsigned f = 0; f < part->mNumFaces; f++)
             if (part->mFaces[f].mNumIndices >= 3) total[1]++, total[2] += part->mFaces[f].mNumIndices;
     }
@@ -46,27 +47,41 @@ static _Bool add_vertices(mu_gathered *g, const struct aiMesh *part, const mu_ma
     return 1;
 }
 
+/* What the corner has besides its position. */
+static void add_corner(mu_gathered *g, const struct aiMesh *part, const mu_map *map, unsigned i) {
+    const size_t at = g->out->corners;
+    if (g->out->uv) {
+        const struct aiVector3D *uv = part->mTextureCoords[0] ? &part->mTextureCoords[0][i] : NULL;
+        g->out->uv[2 * at] = uv ? (double)uv->x : NAN;
+        g->out->uv[2 * at + 1] = uv ? (double)uv->y : NAN;
+    }
+    if (g->out->normal && part->mNormals) {
+        const struct aiVector3D *v = &part->mNormals[i];
+        const mu_dvec3 n = mu_transpose_times(map->inverse, mu_d3((double)v->x, (double)v->y, (double)v->z));
+        const mu_vec3 unit = mu_single(mu_dnormalise(n));
+        memcpy(g->out->normal + 3 * at, &unit, 3 * sizeof(float));
+    }
+}
+
 static _Bool add_part(mu_gathered *g, const struct aiMesh *part, const mu_map *map) {
     mu_polygons *out = g->out;
     const uint32_t base = out->vertices;
     if (!add_vertices(g, part, map)) return 0;
     for (unsigned f = 0; f < part->mNumFaces; f++) {
         const struct aiFace *face = &part->mFaces[f];
+        const unsigned last = face->mNumIndices - 1;
         if (face->mNumIndices < 3) continue;
         if (face->mNumIndices > MU_POLYGON_MOST)
             return mu_fail(g->error, "%s: a face of %u vertices; at most %d", out->file, face->mNumIndices,
                            MU_POLYGON_MOST);
         out->first[out->faces++] = out->corners;
-        for (unsigned k = 0; k < face->mNumIndices; k++, out->corners++) {
-            const unsigned i = face->mIndices[map->determinant < 0 ? face->mNumIndices - 1 - k : k];
+        for (unsigned k = 0; k <= last; k++, out->corners++) {
+            const unsigned i = face->mIndices[map->determinant < 0 ? last - k : k]; /* keep the outside */
             if (i >= part->mNumVertices)
                 return mu_fail(g->error, "%s: a face names vertex %u of %u", out->file, i,
                                part->mNumVertices);
             out->vertex[out->corners] = base + i;
-            if (!out->uv) continue;
-            const struct aiVector3D *uv = part->mTextureCoords[0] ? &part->mTextureCoords[0][i] : NULL;
-            out->uv[2 * (size_t)out->corners] = uv ? (double)uv->x : NAN;
-            out->uv[2 * (size_t)out->corners + 1] = uv ? (double)uv->y : NAN;
+            add_corner(g, part, map, i);
         }
     }
     return 1;
@@ -100,7 +115,9 @@ static _Bool gather(mu_gathered *g) {
     out->first = malloc((total[1] + 1) * sizeof *out->first);
     out->vertex = malloc(total[2] * sizeof *out->vertex);
     out->uv = g->any_uvs ? malloc(2 * total[2] * sizeof *out->uv) : NULL;
-    if (!out->position || !out->first || !out->vertex || (g->any_uvs && !out->uv))
+    out->normal = g->any_normals ? calloc(total[2], 3 * sizeof *out->normal) : NULL;
+    if (!out->position || !out->first || !out->vertex || (g->any_uvs && !out->uv) ||
+        (g->any_normals && !out->normal))
         return mu_fail(g->error, "%s: not enough memory for %zu faces", out->file, total[1]);
     if (!add_node(g, g->scene->mRootNode, &identity)) return 0;
     out->first[out->faces] = out->corners;
@@ -143,5 +160,6 @@ void mu_polygons_free(mu_polygons *polygons) {
     free(polygons->first);
     free(polygons->vertex);
     free(polygons->uv);
+    free(polygons->normal);
     *polygons = (mu_polygons){.file = polygons->file};
 }

@@ -19,6 +19,7 @@ typedef struct mu_polygons {
     uint32_t *first;  /* per face its first corner, and `corners` at the end; 3 corners or more */
     uint32_t *vertex; /* per corner */
     double *uv;       /* 2 per corner, NaN where a corner has none; NULL: nowhere any */
+    float *normal;    /* 3 per corner, of any length, 0 where a corner has none; NULL: nowhere any */
 } mu_polygons;
 
 /*

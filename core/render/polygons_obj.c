@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * polygons_obj.c: Wavefront OBJ with its own numbering, which assimp's reader does not keep: it makes a vertex of every
- * corner and sorts faces by material. Reads v, vt and f (Wavefront, "Advanced Visualizer Manual", appendix B1);
+ * corner and sorts faces by material. Reads v, vt, vn and f (Wavefront, "Advanced Visualizer Manual", appendix B1);
  * other lines say nothing of the shape. Indices may be negative (from the end), a backslash continues a line.
  */
 #include <errno.h>
@@ -21,8 +21,8 @@ typedef struct mu_list { /* of numbers or of indices */
 typedef struct mu_obj {
     const char *file;
     unsigned long line;
-    mu_list positions, uvs;         /* double */
-    mu_list first, vertex, texture; /* uint32_t; texture UINT32_MAX: none */
+    mu_list positions, uvs, normals;        /* double */
+    mu_list first, vertex, texture, normal; /* uint32_t; the last two UINT32_MAX: none */
     mu_error *error;
 } mu_obj;
 
@@ -70,20 +70,27 @@ static _Bool read_index(mu_obj *obj, char **text, size_t count, const char *what
     return 1;
 }
 
+/* v, v/t, v//n or v/t/n. */
+static _Bool read_corner(mu_obj *obj, char **text) {
+    uint32_t vertex, texture = UINT32_MAX, normal = UINT32_MAX;
+    if (!read_index(obj, text, obj->positions.count / 3, "vertex", &vertex)) return 0;
+    if (**text == '/' && strcspn(++*text, " \t/") &&
+        !read_index(obj, text, obj->uvs.count / 2, "texture coordinate", &texture))
+        return 0;
+    if (**text == '/' && strcspn(++*text, " \t") &&
+        !read_index(obj, text, obj->normals.count / 3, "normal", &normal))
+        return 0;
+    if (strcspn(*text, " \t"))
+        return mu_fail(obj->error, "%s:%lu: \"%.40s\" in a face", obj->file, obj->line, *text);
+    return append(obj, &obj->vertex, &vertex, sizeof vertex) &&
+           append(obj, &obj->texture, &texture, sizeof texture) &&
+           append(obj, &obj->normal, &normal, sizeof normal);
+}
+
 static _Bool read_face(mu_obj *obj, char *text) {
     const uint32_t start = (uint32_t)obj->vertex.count;
-    for (text += strspn(text, " \t"); *text; text += strspn(text, " \t")) {
-        uint32_t vertex, texture = UINT32_MAX;
-        if (!read_index(obj, &text, obj->positions.count / 3, "vertex", &vertex)) return 0;
-        if (text[0] == '/' && text[1] != '/') {
-            text++;
-            if (!read_index(obj, &text, obj->uvs.count / 2, "texture coordinate", &texture)) return 0;
-        }
-        text += strcspn(text, " \t"); /* the normal */
-        if (!append(obj, &obj->vertex, &vertex, sizeof vertex) ||
-            !append(obj, &obj->texture, &texture, sizeof texture))
-            return 0;
-    }
+    for (text += strspn(text, " \t"); *text; text += strspn(text, " \t"))
+        if (!read_corner(obj, &text)) return 0;
     const size_t corners = obj->vertex.count - start;
     if (corners < 3 || corners > MU_POLYGON_MOST)
         return mu_fail(obj->error, "%s:%lu: a face of %zu vertices; must have 3 to %d", obj->file, obj->line,
@@ -100,6 +107,7 @@ static _Bool read_line(mu_obj *obj, char *line) {
     char *rest = line + length;
     if (length == 1 && *line == 'v') return read_numbers(obj, &obj->positions, rest, 3, 3);
     if (length == 2 && !strncmp(line, "vt", 2)) return read_numbers(obj, &obj->uvs, rest, 1, 2);
+    if (length == 2 && !strncmp(line, "vn", 2)) return read_numbers(obj, &obj->normals, rest, 3, 3);
     if (length == 1 && *line == 'f') return read_face(obj, rest);
     return 1;
 }
@@ -136,6 +144,28 @@ static _Bool read_lines(mu_obj *obj, FILE *stream) {
     return good;
 }
 
+static _Bool gather_uvs(mu_obj *obj, mu_polygons *out) {
+    out->uv = malloc(((size_t)out->corners + 1) * 2 * sizeof *out->uv);
+    if (!out->uv) return mu_fail(obj->error, "%s: not enough memory", obj->file);
+    for (size_t i = 0; i < out->corners; i++) {
+        const uint32_t at = ((const uint32_t *)obj->texture.at)[i];
+        for (size_t k = 0; k < 2; k++)
+            out->uv[2 * i + k] = at == UINT32_MAX ? NAN : ((const double *)obj->uvs.at)[2 * (size_t)at + k];
+    }
+    return 1;
+}
+
+static _Bool gather_normals(mu_obj *obj, mu_polygons *out) {
+    out->normal = calloc((size_t)out->corners + 1, 3 * sizeof *out->normal);
+    if (!out->normal) return mu_fail(obj->error, "%s: not enough memory", obj->file);
+    for (size_t i = 0; i < out->corners; i++) {
+        const uint32_t at = ((const uint32_t *)obj->normal.at)[i];
+        for (size_t k = 0; k < 3 && at != UINT32_MAX; k++)
+            out->normal[3 * i + k] = (float)((const double *)obj->normals.at)[3 * (size_t)at + k];
+    }
+    return 1;
+}
+
 static _Bool hand_over(mu_obj *obj, mu_polygons *out) {
     const uint32_t corners = (uint32_t)obj->vertex.count;
     if (!obj->first.count) return mu_fail(obj->error, "%s: the mesh is empty: it has no faces", obj->file);
@@ -144,17 +174,9 @@ static _Bool hand_over(mu_obj *obj, mu_polygons *out) {
     out->faces = (uint32_t)obj->first.count;
     out->vertices = (uint32_t)(obj->positions.count / 3);
     out->corners = corners;
-    if (!append(obj, &obj->first, &corners, sizeof corners)) return 0;
-    if (obj->uvs.count) {
-        out->uv = malloc(((size_t)corners + 1) * 2 * sizeof *out->uv);
-        if (!out->uv) return mu_fail(obj->error, "%s: not enough memory", obj->file);
-        for (size_t i = 0; i < corners; i++) {
-            const uint32_t texture = ((const uint32_t *)obj->texture.at)[i];
-            for (size_t k = 0; k < 2; k++)
-                out->uv[2 * i + k] =
-                    texture == UINT32_MAX ? NAN : ((const double *)obj->uvs.at)[2 * (size_t)texture + k];
-        }
-    }
+    if (!append(obj, &obj->first, &corners, sizeof corners) || (obj->uvs.count && !gather_uvs(obj, out)) ||
+        (obj->normals.count && !gather_normals(obj, out)))
+        return 0;
     out->position = obj->positions.at, out->first = obj->first.at, out->vertex = obj->vertex.at;
     obj->positions.at = obj->first.at = obj->vertex.at = NULL;
     return 1;
@@ -171,5 +193,7 @@ _Bool mu_polygons_read_obj(mu_polygons *polygons, const char *file, mu_error *er
     free(obj.first.at);
     free(obj.vertex.at);
     free(obj.texture.at);
+    free(obj.normals.at);
+    free(obj.normal.at);
     return good;
 }

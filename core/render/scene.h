@@ -52,11 +52,14 @@ typedef struct mu_mesh {
     float *normals;   /* 3 each, unit */
     float *uvs;       /* 2 each */
     float *tangents;  /* 4 each */
+    float *tension;   /* 4 each: M of the deformation from the mesh at rest, in the triangles' frames (tension.h) */
+    char *rest;       /* the file of that mesh */
     uint32_t *indices;
 } mu_mesh;
 
 typedef struct mu_named_material {
     char *name;
+    _Bool deforming; /* made for objects with tension */
     mu_material material;
 } mu_named_material;
 

@@ -12,17 +12,33 @@
 #include "core/render/mesh.h"
 #include "core/render/scene_read.h"
 
-static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, uint32_t *out) {
+/* The mesh as it is, or deformed from the one at rest in the file at `rest`. */
+static _Bool read_file(const mu_reader *reader, const mu_place *place, const char *path, const mu_place *rest,
+                       mu_mesh *mesh, mu_mesh_notes *notes) {
+    mu_error reason = {.text = ""};
+    char found[768] = "";
+    if (!rest->value)
+        return mu_mesh_read(mesh, path, notes, &reason) ||
+               mu_place_fail(place, reader->error, "%s", reason.text);
+    char *rest_path = mu_scene_path(reader, json_string_value(rest->value));
+    if (!rest_path) return mu_fail(reader->error, "not enough memory for the scene");
+    const _Bool good = mu_mesh_read_deformed(mesh, rest_path, path, notes, found, sizeof found, &reason);
+    free(rest_path);
+    if (*found) mu_scene_warn(reader, rest, found);
+    return good || mu_place_fail(rest, reader->error, "%s", reason.text);
+}
+
+static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, const mu_place *rest,
+                  uint32_t *out) {
     const mu_place place = mu_place_member(definition, "file");
     mu_scene *scene = reader->scene;
-    mu_error reason = {.text = ""};
     mu_mesh mesh;
     mu_mesh_notes notes;
     char *path = mu_scene_path(reader, json_string_value(place.value));
     if (!path) return mu_fail(reader->error, "not enough memory for the scene");
-    const _Bool ok = mu_mesh_read(&mesh, path, &notes, &reason);
+    const _Bool ok = read_file(reader, &place, path, rest, &mesh, &notes);
     free(path);
-    if (!ok) return mu_place_fail(&place, reader->error, "%s", reason.text);
+    if (!ok) return 0;
     if (notes.dropped) {
         char text[96];
         snprintf(text, sizeof text, "%u triangles without area were left out", (unsigned)notes.dropped);
@@ -41,17 +57,31 @@ static _Bool load(mu_reader *reader, const mu_place *definition, const char *nam
     return 1;
 }
 
-_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, uint32_t *out) {
-    const char *name;
+/* Whether a mesh read before is this one, from the same mesh at rest. */
+static _Bool is_same(const mu_reader *reader, const mu_mesh *mesh, const char *name, const mu_place *rest) {
+    if (strcmp(mesh->name, name) || !mesh->rest != !rest->value) return 0;
+    if (!mesh->rest) return 1;
+    char *path = mu_scene_path(reader, json_string_value(rest->value));
+    const _Bool same = path && !strcmp(path, mesh->rest);
+    free(path);
+    return same;
+}
+
+_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *tension, uint32_t *out) {
+    const char *name, *file;
+    const mu_place rest = mu_place_member(tension, "rest");
     if (!mu_place_string(place, &name, reader->error)) return 0;
+    if (tension->value && (!mu_place_only(tension, mu_scene_keys(MU_KEYS_TENSION), reader->error) ||
+                           !mu_place_string(&rest, &file, reader->error)))
+        return 0;
     for (uint32_t i = 0; i < reader->scene->mesh_count; ++i)
-        if (!strcmp(reader->scene->meshes[i].name, name)) {
+        if (is_same(reader, &reader->scene->meshes[i], name, &rest)) {
             *out = i;
             return 1;
         }
     const mu_place definition = mu_place_member(&reader->meshes, name);
     if (!definition.value) return mu_fail_unknown(place, reader->meshes.value, "mesh", reader->error);
-    return load(reader, &definition, name, out);
+    return load(reader, &definition, name, &rest, out);
 }
 
 _Bool mu_check_meshes(mu_reader *reader) {

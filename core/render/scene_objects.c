@@ -9,7 +9,8 @@
 static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *object) {
     static const char *const shapes[] = {"rectangle", "sphere", NULL};
     mu_error *error = reader->error;
-    const mu_place shape = mu_place_member(place, "shape"), mesh = mu_place_member(place, "mesh");
+    const mu_place shape = mu_place_member(place, "shape"), mesh = mu_place_member(place, "mesh"),
+                   tension = mu_place_member(place, "tension");
     size_t choice;
     if (!json_is_object(place->value)) return mu_place_only(place, mu_scene_keys(MU_KEYS_RECTANGLE), error);
     if (shape.value && mesh.value)
@@ -17,11 +18,11 @@ static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *obj
     if (mesh.value) {
         object->shape = MU_MESH;
         return mu_place_only(place, mu_scene_keys(MU_KEYS_MESH_OBJECT), error) &&
-               mu_read_mesh(reader, &mesh, &object->mesh);
+               mu_read_mesh(reader, &mesh, &tension, &object->mesh);
     }
     if (!shape.value) { /* a misspelt key is the likelier mistake */
-        static const char *const any[] = {"shape",     "mesh",      "size", "radius", "material",
-                                          "transform", "two_sided", "grid", NULL};
+        static const char *const any[] = {"shape",    "mesh",      "tension",   "size", "radius",
+                                          "material", "transform", "two_sided", "grid", NULL};
         if (!mu_place_only(place, any, error)) return 0;
         return mu_place_fail(place, error, "needs a \"shape\" (\"rectangle\" or \"sphere\") or a \"mesh\"");
     }
@@ -43,6 +44,18 @@ static _Bool check_uvs(mu_reader *reader, const mu_place *place, const mu_object
                          what ? what : "its \"jacobian\"", scene->meshes[object->mesh].name);
 }
 
+static _Bool is_deformed(const mu_scene *scene, const mu_object *object) {
+    return object->shape == MU_MESH && scene->meshes[object->mesh].tension != NULL;
+}
+
+static _Bool check_tension(mu_reader *reader, const mu_place *place, const mu_object *object) {
+    const mu_material *material = &reader->scene->materials[object->material].material;
+    if (!is_deformed(reader->scene, object) || material->tension) return 1;
+    const mu_place tension = mu_place_member(place, "tension");
+    return mu_place_fail_key(&tension, reader->error, "%s has no transform that may vary",
+                             material->type->id);
+}
+
 static _Bool read_grid(mu_reader *reader, const mu_place *parent, mu_object *object, const char *owner) {
     const mu_place place = mu_place_member(parent, "grid");
     char name[96];
@@ -54,7 +67,8 @@ static _Bool read_grid(mu_reader *reader, const mu_place *parent, mu_object *obj
         return 0;
     const mu_place material = mu_place_member(&place, "material");
     snprintf(name, sizeof name, "%.60s.grid.material", owner);
-    return mu_read_material(reader, &material, name, &object->grid.material) &&
+    return mu_read_material(reader, &material, name, is_deformed(reader->scene, object),
+                            &object->grid.material) &&
            check_uvs(reader, &place, object, object->grid.material, "a grid");
 }
 
@@ -67,7 +81,9 @@ static _Bool read_object(mu_reader *reader, const mu_place *place, mu_object *ob
     snprintf(inlined, sizeof inlined, "%s.material", owner);
     return read_shape(reader, place, object) && mu_read_transform(place, &object->to_world, reader->error) &&
            (!two_sided.value || mu_place_flag(&two_sided, &object->two_sided, reader->error)) &&
-           mu_read_material(reader, &material, inlined, &object->material) &&
+           mu_read_material(reader, &material, inlined, is_deformed(reader->scene, object),
+                            &object->material) &&
+           check_tension(reader, place, object) &&
            check_uvs(reader, &material, object, object->material, NULL) &&
            read_grid(reader, place, object, owner);
 }

@@ -20,6 +20,7 @@ typedef enum mu_key_set {
     MU_KEYS_RECTANGLE,
     MU_KEYS_SPHERE,
     MU_KEYS_MESH_OBJECT,
+    MU_KEYS_TENSION,
     MU_KEYS_GRID,
     MU_KEYS_STEP,
     MU_KEYS_ENVIRONMENT,
@@ -64,11 +65,12 @@ _Bool mu_read_objects(mu_reader *reader);
 _Bool mu_read_lights(mu_reader *reader); /* after the objects: adds those of rectangle lights */
 
 /* Index of the material at `place`, a name or an object; made when it is first met. `owner` names an inline
- * one. */
-_Bool mu_read_material(mu_reader *reader, const mu_place *place, const char *owner, uint32_t *out);
+ * one. `deforming`: for an object with tension, for which it is made apart. */
+_Bool mu_read_material(mu_reader *reader, const mu_place *place, const char *owner, _Bool deforming, uint32_t *out);
 /* Named materials that nothing uses are checked all the same, then dropped. */
 _Bool mu_check_unused_materials(mu_reader *reader);
-_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, uint32_t *out);
+/* `tension`: {"rest": file}, or without value. */
+_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *tension, uint32_t *out);
 _Bool mu_check_meshes(mu_reader *reader);
 /* Tangents for those meshes that a material with a direction stands on. */
 _Bool mu_make_scene_tangents(mu_reader *reader);

@@ -14,7 +14,18 @@ static mu_frame frame_about(mu_vec3 n, mu_vec3 t) {
     return (mu_frame){t, mu_cross(n, t), n};
 }
 
-void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame, float m[4]) {
+void mu_shading_tension(const mu_hit *hit, _Bool turned, const float transform[4], float m[4]) {
+    const float *t = hit->tension;
+    const double across = turned ? -1 : 1;
+    for (int column = 0; column < 2; column++) {
+        const double x = (double)transform[column], y = (double)transform[2 + column];
+        m[column] = (float)((double)t[0] * x + across * (double)t[1] * y);
+        m[2 + column] = (float)(across * (double)t[2] * x + (double)t[3] * y);
+    }
+}
+
+void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame,
+                         const float transform[4], float m[4]) {
     const mu_jacobian *map = &material->jacobian;
     const double p00 = (double)mu_dot(hit->dpdu, frame->t), p01 = (double)mu_dot(hit->dpdv, frame->t);
     const double p10 = (double)mu_dot(hit->dpdu, frame->b), p11 = (double)mu_dot(hit->dpdv, frame->b);
@@ -26,7 +37,7 @@ void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const m
         slope = map->amount * map->exponent * pow((double)hit->uv[0], map->exponent - 1);
     const double s = slope / determinant;
     const double j00 = 1 + s * p01 * p11, j01 = -s * p01 * p01, j10 = s * p11 * p11, j11 = 1 - s * p11 * p01;
-    const float *t = material->transform;
+    const float t[4] = {transform[0], transform[1], transform[2], transform[3]};
     for (int column = 0; column < 2; column++) {
         m[column] = (float)(j00 * (double)t[column] + j01 * (double)t[2 + column]);
         m[2 + column] = (float)(j10 * (double)t[column] + j11 * (double)t[2 + column]);
@@ -43,14 +54,14 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
     shading->ng = hit->ng;
     shading->type = material->type;
     shading->closure = closure;
-    _Bool front = mu_dot(wo, hit->ng) > 0;
+    _Bool front = mu_dot(wo, hit->ng) > 0, turned = 0;
     /* what transmits has an inside: turned over, light would enter the glass where it leaves it */
     const _Bool opaque = !(material->plan.lobes & TRANSMISSION);
     if (!front && opaque && scene->objects[hit->object].two_sided) {
         shading->ng = mu_scale(shading->ng, -1);
         shading->frame.n = mu_scale(shading->frame.n, -1);
         shading->frame.b = mu_scale(shading->frame.b, -1);
-        front = 1;
+        front = turned = 1;
     }
     mu_vec3 local = mu_to_local(&shading->frame, wo);
     if ((local.z > 0) != front) {
@@ -58,8 +69,14 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
         local = mu_to_local(&shading->frame, wo);
     }
     const float *slots = NULL;
+    const float *transform = material->transform;
+    if (material->tension) {
+        mu_shading_tension(hit, turned, transform, shading->slots + MU_SLOT_TRANSFORM);
+        transform = shading->slots + MU_SLOT_TRANSFORM;
+        slots = shading->slots;
+    }
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
-        mu_shading_jacobian(material, hit, &shading->frame, shading->slots + MU_SLOT_TRANSFORM);
+        mu_shading_jacobian(material, hit, &shading->frame, transform, shading->slots + MU_SLOT_TRANSFORM);
         slots = shading->slots;
     }
     if (material->footprints) {

@@ -31,10 +31,17 @@ typedef struct mu_shading {
 void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
                       const mu_beam *beam, void *closure);
 
-/* M = P J P^-1 transform: J, a map of the texture square, taken to the tangent plane by P = [dpdu dpdv] in
- * the frame (t, b). Without usable UVs, or where J is not finite, M = transform. Rows [m00 m01], [m10 m11].
- */
-void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame, float m[4]);
+/* What comes of the material's constant `transform` where M varies: first that, then the tension T of the mesh, then the
+ * Jacobian of the map: M = P J P^-1 T transform, P = [dpdu dpdv] in the frame (t, b) of the deformed surface. At rest P is
+ * T^-1 P, so this is the tension of a microsurface made by the map at rest: T (P_rest J P_rest^-1 transform).
+ * Rows [m00 m01], [m10 m11]. */
+
+/* T transform. `turned`: seen from behind, b is -b. */
+void mu_shading_tension(const mu_hit *hit, _Bool turned, const float transform[4], float m[4]);
+
+/* P J P^-1 transform; without usable UVs, or where J is not finite, transform. `m` may be `transform`. */
+void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame,
+                         const float transform[4], float m[4]);
 
 /* Whether shading frame and geometry agree on which side `world` = `local` points to. */
 static inline _Bool mu_shading_agrees(const mu_shading *shading, mu_vec3 world, float local_z) {

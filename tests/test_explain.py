@@ -41,6 +41,7 @@ NEEDS = {
     "meshes": {"objects": [TILE]},
     "instances": {"objects": [TILE, TILE]},
     "mesh_tangents": {"objects": [{"mesh": "tile", "material": dict(METAL, transform=[[5, 1], [0, 1]])}]},
+    "tensions": {"objects": [dict(TILE, material=METAL, tension={"rest": "tile.obj"})]},
     "grids": {"objects": [dict(BALL, grid={"material": LAMBERT})]},
     "two_sided": {"objects": [dict(BALL, two_sided=True)]},
     "jacobians": with_material(jacobian={"map": "power_shear", "amount": 2, "exponent": 5}),

@@ -22,7 +22,7 @@ VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 SCENES = sorted(path for path in (ROOT / "scenes").glob("*.json") if path.name != "scene.schema.json")
 BEYOND_A_SCHEMA = ("there is no", "singular", "zero vector", "same point", "line of sight", "at most one light",
                    "must not be zero", "too many", "No such file", "last row", "is missing; the studio", "within 1e+09",
-                   "needs texture coordinates")
+                   "needs texture coordinates", "no transform that may vary", "not a mesh file")
 # Every kind of object, each key at least once.
 FULL = {
     "$schema": "x", "musurf": 1, "description": "all there is",
@@ -37,7 +37,8 @@ FULL = {
                        {"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}],
          "grid": {"lines": 10, "width": 0.01, "material": {"material": "template.lambert"}}},
         {"shape": "rectangle", "size": [2, 2], "material": "clay", "transform": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]},
-        {"mesh": "tile", "material": "clay"}],
+        {"mesh": "tile", "material": "clay"},
+        {"mesh": "tile", "material": {"material": "musurf.microfacet"}, "tension": {"rest": "tile.obj"}}],
     "lights": [{"type": "constant", "radiance": [1, 1, 1]},
                {"type": "directional", "direction": [0, 0, 1], "irradiance": 1},
                {"type": "rectangle", "size": [1, 1], "radiance": 2, "transform": [{"translate": [0, 0, 3]}]}],

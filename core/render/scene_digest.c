@@ -47,7 +47,7 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
         digest = add(digest, mesh->positions, 3 * sizeof(float) * n);
         digest = add(digest, mesh->normals, mesh->normals ? 3 * sizeof(float) * n : 0);
         digest = add(digest, mesh->uvs, mesh->uvs ? 2 * sizeof(float) * n : 0);
-        digest = add(digest, mesh->tension, mesh->tension ? 4 * sizeof(float) * n : 0);
+        if (mesh->tension) digest = add(digest, mesh->tension, 4 * sizeof(float) * n);
         digest = add(digest, mesh->tangents, mesh->tangents ? 4 * sizeof(float) * n : 0);
     }
     for (uint32_t i = 0; i < scene->light_count; ++i)

@@ -18,6 +18,9 @@
  * stretch.h, weighted by area and angle of the corner, both at rest. Between the points of a triangle M is
  * interpolated linearly (mu_tension_mix): triangular matrices with positive diagonals stay so, hence invertible.
  *
+ * Accuracy: on a smooth deformation a triangle's M is that of its middle to first order in its size, and so is a mean over
+ * triangles that lie around a point unevenly; evenly, as in a regular grid, to second order.
+ *
  * Deterministic: sums run in the order of the triangles. A mesh may be read by several threads.
  */
 #ifndef MU_TENSION_H

@@ -252,6 +252,19 @@ class Tension(unittest.TestCase):
         self.assertEqual(found["summary"]["uv_mirrored"], 2)
         np.testing.assert_allclose(found["faces"] + found["vertices"], [[1, 0, 0, 1]] * 6, atol=1e-15)
 
+    def test_mirrored_textures(self):
+        """Mirrored at rest only: u and b point the other way there. Folded at the diagonal: there each side has its own chart."""
+        points, uv, faces = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 0), (1, 0), (0, 1), (1, 1)], [(0, 1, 2), (3, 2, 1)]
+        rest = self.put("rest.obj", obj(points, [(-u, v) for u, v in uv], faces))
+        found = self.ask(rest, self.put("same.obj", obj(points, uv, faces)), warns="contains the turn")
+        np.testing.assert_allclose(found["faces"] + found["vertices"], [[-1, 0, 0, -1]] * 6, atol=1e-15)
+        folded = uv[:3] + [(0, 0)]  # u is along x in the first triangle, along -y in the second
+        wide = [(2 * x, y, z) for x, y, z in points]
+        found = self.ask(self.put("a.obj", obj(points, folded, faces)), self.put("b.obj", obj(wide, folded, faces)))
+        self.assertEqual(found["faces"], [[2, 0, 0, 1], [1, 0, 0, 2]])
+        self.assertEqual(found["vertices"], [[2, 0, 0, 1]] * 3 + [[1, 0, 0, 2]])
+        self.assertEqual(found["seams"], [{"vertex": 2, "uv": [0, 1], "m": [1, 0, 0, 2]}, {"vertex": 1, "uv": [1, 0], "m": [1, 0, 0, 2]}])
+
     def test_folds_are_counted(self):
         """One vertex of a fine sheet pushed across its neighbours turns some of its triangles over."""
         flat, faces = sheet(6)

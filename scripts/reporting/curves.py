@@ -25,10 +25,18 @@ def picture(curve):
     inks = plt.get_cmap("tab20" if len(curve["series"]) > 10 else "tab10").colors
     for k, series in enumerate(curve["series"]):
         xs, ys = [p["x"] for p in series["points"]], [p["y"] for p in series["points"]]
-        axis.plot(xs, ys, linestyle="-" if series.get("line") else "", marker="o", markersize=4, label=series["name"], color=inks[k % len(inks)])
+        ink, law = inks[k % len(inks)], series.get("fit")
+        name = series["name"] + (f": slope {law['slope']:+.2f}" + (f" ± {law['error']:.2f}" if law["error"] is not None else "") if law else "")
+        axis.plot(xs, ys, linestyle="-" if series.get("line") else "", marker="o", markersize=4, label=name, color=ink)
+        if law:
+            ends = [min(xs), max(xs)]
+            axis.plot(ends, [law["factor"] * x ** law["slope"] for x in ends], linestyle="--", linewidth=1, color=ink)
+        bars = [(p["x"], p["y"], p["y_error"]) for p in series["points"] if p.get("y_error")]
+        if bars:
+            axis.errorbar(*zip(*((x, y) for x, y, _ in bars)), yerr=[[min(e, 0.9 * y) for _, y, e in bars], [e for *_, e in bars]], fmt="none", linewidth=0.8, color=ink)
         crowded = len(series["points"]) >= 20 or (series.get("line") and len(lines) > 2 and series is not lines[0])
         for p in [] if crowded else series["points"]:
-            axis.annotate(p.get("label", ""), (p["x"], p["y"]), xytext=(4, 3), textcoords="offset points", fontsize=7, color=inks[k % len(inks)])
+            axis.annotate(p.get("label", ""), (p["x"], p["y"]), xytext=(4, 3), textcoords="offset points", fontsize=7, color=ink)
     axis.set(xlabel=curve["x"]["label"], ylabel=curve["y"]["label"], xscale="log" if curve["x"].get("log") else "linear",
              yscale="log" if curve["y"].get("log") else "linear")
     axis.grid(alpha=0.3)
@@ -48,6 +56,8 @@ def table(curve):
     x, y = (html.escape(curve[axis]["label"]) for axis in "xy")
     every = [p.get("label", "") for series in curve["series"] for p in series["points"]]
     labels = list(dict.fromkeys(every))
+    if any("megabytes" in p for series in curve["series"] for p in series["points"]):
+        return resources(curve, x, y)
     if len(labels) > 12 or len(labels) == len(every):
         rows = "".join(f"<tr><td>{html.escape(series['name'])}</td><td>{html.escape(p.get('label', ''))}</td><td>{number(p['x'])}</td><td>{p['y']:.3g}</td></tr>"
                        for series in curve["series"] for p in series["points"])
@@ -60,8 +70,25 @@ def table(curve):
     return f'<table><caption>{y}, below it {x}</caption><thead><tr><th></th>{heads}</tr></thead><tbody>{"".join(rows)}</tbody></table>'
 
 
+def resources(curve, x, y):
+    """A row for each point, with what it took."""
+    columns = [("seconds", "wall s"), ("cpu_seconds", "processor s"), ("megabytes", "MB")]
+    rows = []
+    for series in curve["series"]:
+        for p in series["points"]:
+            error = f" ± {p['y_error']:.1g}" if p.get("y_error") else ""
+            cells = [html.escape(series["name"]), html.escape(p.get("label", "")), number(p["x"]), f"{p['y']:.3g}{error}", *(number(p[key]) for key, _ in columns)]
+            rows.append(f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
+    heads = "".join(f"<th>{head}</th>" for head in ("", "", x, y, *(name for _, name in columns)))
+    return f"<table><thead><tr>{heads}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+
+
 def section(curves):
-    parts = ['<h2 id="curves">Error against run time</h2>', "<p>Error and time of a curve were measured in the same run.</p>"]
+    return ('<h2 id="curves">Error against run time</h2>\n<p>Error and time of a curve were measured in the same run.</p>\n' + figures(curves))
+
+
+def figures(curves):
+    parts = []
     for curve in curves:
         title, data = html.escape(curve["title"]), base64.b64encode(picture(curve)).decode()
         parts.append(f'<h3>{title}</h3><p>{html.escape(curve.get("text", ""))}</p><figure><img alt="{title}" src="data:image/png;base64,{data}">'

@@ -3,7 +3,8 @@
 """Error against run time, from the benchmarks: each curve's error and time come from the same run.
 
 A curve is a JSON object: "title", "text", "command"; "x" and "y": {"label", "log"}; "series": [{"name", "line", "points": [{"x",
-"y", "label"}]}]; more than that, such as "rows", is for readers of the JSON alone. scripts/reporting/curves.py draws every file
+"y", "label"}]}]; more than that, such as "rows", is for readers of the JSON alone, except that a series may have a power law, "fit":
+{"slope", "error", "factor"}, and points "y_error" (one standard error) and what they took: "seconds", "cpu_seconds", "megabytes". scripts/reporting/curves.py draws every file
 of that form in a folder, in the order of their names.
 """
 import argparse

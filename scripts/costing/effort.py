@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""How much of each study is run. Seeds are fixed here, before any run: each study draws from a range of its own."""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Effort:
+    sizes: dict       # cells a side: surfaces made of it; the largest is the reference
+    points: tuple     # a facet, of the study of subsamples; 225 is the reference
+    points_of: dict   # tracer: surfaces it looks at
+    most_points: dict  # tracer: more would take too long
+    points_size: int
+    pool: int         # realisations
+    pool_size: int
+    pixels: tuple     # along a side of the image; odd multiples of none of the grids
+    aligned: tuple    # likewise, multiples of the grid
+    images_of: int    # surfaces seen by images
+    image_size: int
+    scales: dict      # tracer: cells a side
+    check: float      # seconds that a prediction may take to be tried
+
+
+QUICK = Effort({64: 8, 128: 6, 256: 3}, (9, 36), {"own": 2, "embree": 2, "povray": 1}, {"own": 225, "embree": 36, "povray": 9}, 64,
+               8, 64, (91, 181), (64, 128), 1, 64, {"own": (64, 128), "embree": (64, 128), "povray": (64, 128)}, 1.0)
+FULL = Effort({64: 48, 128: 32, 256: 24, 512: 12, 1024: 8}, (9, 16, 25, 36, 64, 100, 144), {"own": 6, "embree": 6, "povray": 2},
+              {"own": 225, "embree": 144, "povray": 36}, 128, 64, 256, (91, 181, 363, 725, 1449), (64, 128, 256, 512, 1024, 2048), 4, 128,
+              {"own": (64, 128, 256, 512, 1024), "embree": (64, 128, 256, 512, 1024), "povray": (64, 128, 256, 512)}, 20.0)
+
+REFERENCE = 225  # points per facet, the most there are
+SIZES, POINTS, POOL, IMAGES, SCALES, TRIALS = (k * 1000 for k in range(1, 7))  # first seeds

@@ -22,8 +22,8 @@ CPPFLAGS += -D_GNU_SOURCE -DMUSURF_VERSION='"$(VERSION)"' -I.
 LDFLAGS  += $(SANITIZE) -pthread
 
 .DEFAULT_GOAL := all
-.PHONY: all clean distclean install uninstall test demo bench tables stability report efficiency geometry deps help run-test \
-        run-demo run-tables run-stability run-report run-efficiency run-geometry asan ubsan tsan
+.PHONY: all clean distclean install uninstall test demo bench tables stability report efficiency geometry costs deps help run-test \
+        run-demo run-tables run-stability run-report run-efficiency run-geometry run-costs asan ubsan tsan
 
 # Rooms: each adds to LIBRARIES, PROGRAMS, MODULES, TEST_PROGRAMS and TESTS.
 LIBRARIES :=
@@ -99,7 +99,8 @@ help:
 	@echo 'make bench      speed, as ratios measured in one run'
 	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance'
 	@echo 'make geometry   mirror facets rendered by POV-Ray beside the material fitted to them; QUICK=1: a glance'
-	@echo 'make report     the same, error against run time as curves, mutants, stability, and what make demo left: one page'
+	@echo 'make costs      what accuracy costs on explicit surfaces: error against time and memory; QUICK=1: a glance'
+	@echo 'make report     all of these and the full cross-check, measured and on one page, with what is claimed on top; QUICK=1'
 	@echo 'make tables     measure the accuracy and speed tables of the README again'
 	@echo 'make stability  measure errors over stiff and extreme cases, in float and double, into $(BUILD)/stability/'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'

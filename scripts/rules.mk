@@ -15,17 +15,18 @@ geometry: deps
 run-geometry: all
 	@BUILD=$(BUILD) $(PYTHON) scripts/geometry-pair -o $(BUILD)/geometry $(if $(QUICK),--quick)
 
-# The long report: error against run time as curves, the study above, and what `make demo`, `make test` and `make stability`
-# left, if they ran. QUICK=1: small.
+# What accuracy costs on explicit surfaces: error against time and memory, over grid, points, realisations, images, tracers.
+costs: deps
+	@$(MAKE) --no-print-directory run-costs
+run-costs: all
+	@BUILD=$(BUILD) $(PYTHON) scripts/costs -o $(BUILD)/costs $(if $(QUICK),--quick)
+
+# The long report: everything that can be measured in minutes, measured, with what is claimed on top; shows too what `make test`
+# and `make stability` left. A part that fails is told in the page, and make fails. QUICK=1: small.
 report: deps
 	@$(MAKE) --no-print-directory run-report
-run-report: run-efficiency run-geometry
-	@BUILD=$(BUILD) $(PYTHON) scripts/curves -o $(BUILD)/curves
-	@BUILD=$(BUILD) $(PYTHON) scripts/report --curves $(BUILD)/curves --efficiency $(BUILD)/efficiency --geometry $(BUILD)/geometry \
-	    $(if $(wildcard $(BUILD)/plates/plates.json),--plates $(BUILD)/plates) \
-	    $(if $(wildcard $(BUILD)/validate/fragment.html),--validate $(BUILD)/validate) \
-	    --mutants $(BUILD)/mutants.json --stability $(BUILD)/stability \
-	    --json $(BUILD)/report/report.json -o $(BUILD)/report/report.html
+run-report: all $(BENCHMARKS)
+	@BUILD=$(BUILD) $(PYTHON) scripts/report --all $(if $(QUICK),--quick) --json $(BUILD)/report/report.json -o $(BUILD)/report/report.html
 
 # The README's accuracy, speed and stability tables, measured again.
 tables: deps

@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """What to choose for a wanted error of G1 per slope bin: the quickest grid N, points per facet K and realisations R of a tracer.
 
-    error^2 = (s(N)^2 + (c(K) N0 / N)^2) / R + b(K)^2
+    error^2 = (s(N)^2 + (c(K) N0 / N)^2) / R + b(K)^2 + a(N)^2
 
-s: scatter of surfaces, a power law through the study of grids. Of the study of points at N0: c is the part of their error that
+s: scatter of surfaces, a power law through the study of grids; a is what surfaces of N x N cells share against the largest measured,
+as small periods may. A grid is chosen only where a is known to be less than the wanted error. Of the study of points at N0: c is the part of their error that
 differs from surface to surface and falls with more facets, b is what all surfaces share and nothing but more points removes; at the
 reference's own K both are extrapolated by their power laws. Time is that of making and measuring R surfaces one after another, memory
 that of the larger process; both are sums of terms 1, N^2 log N or 1, N^2, K N^2, fitted with positive coefficients.
@@ -45,6 +46,8 @@ class Costs:
 class Errors:
     def __init__(self, sizes, samples):
         self.law = laws.power([p["size"] for p in sizes["points"]], [p["y"] for p in sizes["points"]])
+        self.shared = {p["size"]: (p["bias"], p["unknown"]) for p in sizes["points"]}
+        self.largest = max(self.shared)
         self.size, self.parts = samples["size"], {k: (v["bias"], v["scatter"]) for k, v in samples["laws"].items()}
         known = sorted(self.parts)
         for part in range(2):  # the reference's own
@@ -57,9 +60,15 @@ class Errors:
     def of_one(self, size, points):
         """(what realisations average out, what they do not)"""
         bias, scatter = self.parts[points]
-        return math.hypot(laws.at(self.law, size), scatter * self.size / size), bias
+        return math.hypot(laws.at(self.law, size), scatter * self.size / size), math.hypot(bias, self.shared.get(size, (0.0, 0.0))[0])
+
+    def knows(self, size, wanted):
+        """Larger than the largest measured: as good as that."""
+        return math.hypot(*self.shared[size]) < wanted if size in self.shared else size > self.largest
 
     def realisations(self, size, points, wanted):
+        if not self.knows(size, wanted):
+            return None
         varying, bias = self.of_one(size, points)
         return None if bias >= wanted else max(1, math.ceil(varying ** 2 / (wanted ** 2 - bias ** 2)))
 

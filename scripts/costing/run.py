@@ -32,8 +32,8 @@ def images(lab, plan):
                                                        for r, values in of.items()] for name, of in found.items()}}
 
 
-def tried(lab, choice, truth, groups, seed):
-    """A choice run anew, in groups of its realisations: its error against the truth, standard error, and time of a group."""
+def tried(lab, choice, truth, unknown, groups, seed):
+    """A choice run anew, in groups of its realisations: its error against the truth (which is off by `unknown`), standard error, and time of a group."""
     values, costs = [], []
     for group in range(groups):
         runs = []
@@ -45,7 +45,7 @@ def tried(lab, choice, truth, groups, seed):
             runs.append(g1)
             costs.append(process.total([made, measured]))
         values.append(np.nanmean(runs, axis=0))
-    error, spread = root(squares(values, truth))
+    error, spread = root(squares(values, truth), unknown ** 2)
     return {"measured": error, "measured_error": spread, "groups": groups, **{f"measured_{u}": sum(c[u] for c in costs) / groups for u in choose.UNITS[:2]}}
 
 
@@ -60,8 +60,9 @@ def choices(lab, plan, found, clock):
             choice = choose.best(errors, costs, wanted, clock)
             rows.append({"tracer": tracer, **(choice or {"wanted": wanted, "size": None})})
             # what the reference itself does not know cannot be tried; four groups tell the error to about a third of it
-            if choice and choice[clock] * 4 < plan.check and found["sizes"]["reference_error"] < wanted / 2:
-                rows[-1].update(tried(lab, rows[-1], truth, 4, seed))
+            unknown = found["sizes"]["reference_error"]
+            if choice and choice[clock] * 4 < plan.check and unknown < 0.7 * wanted:
+                rows[-1].update(tried(lab, rows[-1], truth, unknown, 4, seed))
                 seed += 4 * choice["realisations"]
     return {"rows": rows, "parts": {str(k): {"bias": b, "scatter": s} for k, (b, s) in sorted(errors.parts.items())}, "law": errors.law}
 

@@ -19,22 +19,33 @@ def sizes(lab, plan):
     The reference is the mean over the largest. Theirs is the sample's scatter (the sum of squares over R - 1); what the reference's own
     scatter (1/R of that) adds to the others is taken off.
     """
-    found, costs, makes, measures = {}, {}, {}, {}
+    found, costs, makes = {}, {}, {}
     for size, count in plan.sizes.items():
         runs = []
         for seed in range(efforts.SIZES, efforts.SIZES + count):
             file, made = lab.make(size, seed)
             g1, measured, _ = lab.measure(file)
-            runs.append((g1, process.total([made, measured]), made, measured))
+            runs.append((g1, process.total([made, measured]), made))
             lab.forget(size, seed)
         found[size] = np.array([run[0] for run in runs])
-        costs[size], makes[size], measures[size] = (process.mean([run[k] for run in runs]) for k in (1, 2, 3))
+        costs[size], makes[size] = (process.mean([run[k] for run in runs]) for k in (1, 2))
     largest = max(plan.sizes)
     reference, count = np.nanmean(found[largest], axis=0), plan.sizes[largest]
     scatter = squares(found[largest], reference) * count / (count - 1)
-    points = [point(f"N {size}", root(scatter) if size == largest else root(squares(found[size], reference), scatter.mean() / count),
-                    costs[size], size=size) for size in plan.sizes]
-    return {"points": points, "reference": reference, "reference_error": float(np.sqrt(scatter.mean() / count)), "makes": makes, "measures": measures}
+    excess, points = float(scatter.mean() / count), []
+    for size in plan.sizes:
+        error = root(scatter) if size == largest else root(squares(found[size], reference), excess)
+        points.append(point(f"N {size}", error, costs[size], size=size, **common(found[size], reference, excess, size == largest)))
+    return {"points": points, "reference": reference, "reference_error": float(np.sqrt(excess)), "makes": makes}
+
+
+def common(values, reference, excess, is_reference):
+    """What all surfaces of a size share against the reference ("bias"), and which would be found if they shared nothing ("unknown")."""
+    if is_reference:
+        return {"bias": 0.0, "unknown": 0.0}
+    off = values / reference - 1
+    noise = float(np.nanmean(np.nanvar(off, axis=0, ddof=1)) / len(off)) + excess
+    return {"bias": float(np.sqrt(max(0.0, np.nanmean(np.nanmean(off, axis=0) ** 2) - noise))), "unknown": float(np.sqrt(noise))}
 
 
 def subsamples(lab, plan, tracers):

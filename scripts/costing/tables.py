@@ -32,7 +32,7 @@ def heads(clock):
 def bits(rows):
     """{(tracer, map): (different, of, sizes)}"""
     found = {}
-    for row in rows:
+    for row in (row for row in rows if row["tracer"] != "own"):
         different, of, sizes = found.get((row["tracer"], row["map"]), (0, 0, []))
         found[row["tracer"], row["map"]] = different + row["different"], of + row["bits"], [*sizes, row["size"]]
     return found
@@ -67,7 +67,7 @@ def fragment(result, curves):
         f"very processes, on one thread. {html.escape(', '.join(f'{k}: {v}' for k, v in result['tracers'].items()))}.</p>\n{busy}"
         "<h3>What to choose for a wanted error</h3>\n<p>The quickest grid (N² cells), points per facet (K) and realisations (R) for a relative error of G1, root of the mean "
         "square over slope bins and three views, against the mean over all surfaces of this kind (Beckmann, α = 0.5). Predicted from the laws below: scatter of surfaces "
-        "over N and R, the points’ scatter, and their bias, which no averaging removes. “Tried” is the same run anew four times with fresh seeds, where it takes little time and "
+        "over N and R, the points’ scatter, and what all surfaces of a grid or all points share, which no averaging removes; a grid is offered only where that is known well enough. “Tried” is the same run anew four times with fresh seeds, where it takes little time and "
         f"the reference ({percent(result['reference_error'])}) knows better.</p>\n"
         + table(heads(clock), [choice(row, clock) for row in result["choices"]["rows"]])
         + "<h3>Slopes</h3>\n<p>Exponents p of y = a x<sup>p</sup>, by least squares of the logarithms, with the standard error that the scatter about the line gives.</p>\n"

@@ -7,7 +7,7 @@ Format: magic, version, then attributes as name, type, size, value, little-endia
 import struct
 
 
-class HeaderError(Exception):
+class HeaderError(ValueError):
     pass
 
 

@@ -128,6 +128,47 @@ class Report(unittest.TestCase):
         self.assertRegex(page, "9 materials and directions[^<]* 1 failures.*2.5e-08.*3:ggx.*F &amp; G")
         self.assertNotIn("records", json.loads(data.read_text())["stability"])
 
+    def test_a_failed_part_is_told_and_loses_no_other(self):
+        """No musurf in this build folder: the gallery cannot be made. What an earlier run left of it is not shown as this one's."""
+        for name, values in (("gallery", {"surfaces": []}), ("validate", None), ("efficiency", {
+                "figure9": [], "goal": 0.75, "averages": {"bsdf": {"mixed": {"samples": 1}, "auto": {"samples": 0.7}}}})):
+            (self.path / name).mkdir()
+            (self.path / name / "fragment.html").write_text(f"<h2>Part {name}</h2>")
+            if values is not None:
+                (self.path / name / f"{name}.json").write_text(json.dumps(values))
+        rows = [{"check": "masking", "different": d, "total": 1000, "verdict": "agrees"} for d in (0, 3)]
+        rows += [{"check": "control", "verdict": "FAILS"}, {"check": "G1 per slope", "verdict": "agrees"}, {"check": "G2 / (G1 G1)", "verdict": "differs as Smith is known to"}]
+        (self.path / "validate" / "validate.json").write_text(json.dumps({"verdict": "FAILS", "checks": rows}))
+        os.utime(self.path / "gallery" / "gallery.json", (1e9, 1e9))
+        data = self.path / "out" / "report.json"
+        done = self.run_report("--all", "--quick", "--part", "gallery", "--json", str(data))
+        self.assertEqual((done.returncode, done.stdout), (1, f"{self.output}\n"), done.stderr)
+        page, told = Page(self.output.read_text()), json.loads(data.read_text())
+        self.assertEqual((page.open, page.fetched), ([], []))
+        self.assertEqual([(p["name"], p["fresh"]) for p in told["parts"]], [("gallery", False)])
+        self.assertNotEqual(told["parts"][0]["code"], 0)
+        for fact in ("Parts that failed: gallery", "Part validate", "Part efficiency", 'id="geometry">', "This part is missing"):
+            self.assertIn(fact, page.text)
+        self.assertNotIn("Part gallery", page.text)
+        said = {c["claim"].partition(".")[0]: (c["number"], c["verdict"]) for c in told["claims"]}
+        self.assertEqual(said["Masking is invariant under linear maps of the microsurface"], ("3 of 2000 bits differ; the most in one comparison 3.0e-03", "agrees"))
+        self.assertEqual(said["The cross-check would notice if it were not"][1], "FAILS")
+        self.assertEqual([v for k, v in said.items() if k.startswith("Smith")], [("1 comparisons agree, 1 differ as known, 0 fail", "differs as known")])
+        self.assertEqual([v for k, v in said.items() if k.startswith("Sampling visible")], [("auto needs 0.700 of the samples of mixed (goal 0.75)", "agrees")])
+        self.assertEqual(said["Explicit surfaces follow the laws of their slopes"], ("", "not measured in this run"))  # an older run's is no number of this one
+        missing = [c["section"] for c in told["claims"] if c["verdict"] == "not measured in this run"]
+        self.assertLess({"gallery", "costs", "geometry", "curves", "mutants", "stability"}, {*missing, "more"})
+
+    def test_points_say_what_they_took_and_fits_are_drawn(self):
+        sys.path.insert(0, str(ROOT / "scripts"))
+        from reporting import curves
+        points = [{"x": x, "y": 2 / x, "label": f"N {x}", "y_error": 0.1 / x, "seconds": x, "cpu_seconds": x / 2, "megabytes": 12.5} for x in (1, 2, 4)]
+        curve = {"title": "t", "x": {"label": "s", "log": True}, "y": {"label": "e", "log": True},
+                 "series": [{"name": "a<b", "points": points, "fit": {"slope": -1.0, "error": None, "factor": 2.0}}]}
+        self.assertIn("<td>a&lt;b</td><td>N 2</td><td>2</td><td>1 ± 0.05</td><td>2</td><td>1</td><td>12.5</td>", curves.table(curve))
+        plain = dict(curve, series=[{key: value for key, value in curve["series"][0].items() if key != "fit"}])
+        self.assertNotEqual(curves.picture(curve), curves.picture(plain))
+
     def test_points_that_share_labels_stand_in_one_column(self):
         sys.path.insert(0, str(ROOT / "scripts"))
         from reporting import curves

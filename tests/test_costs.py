@@ -19,10 +19,10 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / os.environ.get("BUILD", "build")
 sys.path.insert(0, str(ROOT / "scripts"))
-from costing import choose, effort, image, laboratory, laws, process, run, studies  # noqa: E402
+from costing import choose, draw, effort, image, laboratory, laws, process, run, studies  # noqa: E402
 
 TINY = dataclasses.replace(effort.QUICK, sizes={64: 4, 128: 3}, points=(9, 16), points_of={"own": 2, "embree": 2, "povray": 1}, points_size=64, pool=8,
-                           pixels=(91,), aligned=(64,), scales={"own": (64, 96), "embree": (64, 96), "povray": (64,)}, check=0.0)
+                           pixels=(61, 91, 121), aligned=(64,), scales={"own": (64, 96), "embree": (64, 96), "povray": (64,)}, check=0.0)
 COST = {"seconds": 1.0, "cpu_seconds": 1.0, "megabytes": 10.0}
 
 
@@ -63,6 +63,14 @@ class Laws(unittest.TestCase):
         terms = np.array([[1.0, n * n, n] for n in (10, 20, 40, 80)])
         np.testing.assert_allclose(laws.sums(terms, terms @ [5, 0.1, 0]), [5, 0.1, 0], rtol=1e-9, atol=1e-9)
         self.assertTrue((laws.sums(terms, terms @ [-3, 0.1, 0]) >= 0).all())
+
+
+    def test_memory_of_the_program_itself_is_no_part_of_its_law(self):
+        points = [dict(COST, label=str(n), facets=n, megabytes=10 + 0.01 * n) for n in (1, 10)]
+        points += [dict(COST, label=str(n), facets=n, megabytes=n) for n in (100, 1000, 10000)]
+        law = draw.series("s", points, "facets", "megabytes")["fit"]
+        self.assertEqual((round(law["slope"], 9), law["points"]), (1.0, 3))
+        self.assertEqual(draw.series("s", points, "facets", "seconds")["fit"]["points"], 5)
 
 
 class Process(unittest.TestCase):
@@ -129,6 +137,13 @@ class Choice(unittest.TestCase):
             varying, shared = self.errors.of_one(choice["size"], choice["points"])
             if choice["realisations"] > 1:
                 self.assertGreater(varying ** 2 / (choice["realisations"] - 1) + shared ** 2, wanted ** 2)
+
+    def test_pixels_by_the_law(self):
+        points = [dict(COST, pixels=r, y=100 / r ** 1.5, seconds=r * r * 1e-6) for r in (100, 200, 400)]
+        found = choose.pixels(points, "seconds")
+        self.assertEqual([(c["pixels"], c["measured"]) for c in found[:2]], [(465, False), (1036, False)])  # (100 / 0.01)^(2/3) = 464.2, (100 / 0.003)^(2/3) = 1035.7
+        self.assertAlmostEqual(found[0]["seconds"], 465 ** 2 * 1e-6, 9)
+        self.assertIsNone(choose.pixels([dict(COST, pixels=r, y=r) for r in (1, 2, 3)], "seconds"))
 
     def test_bias_is_not_averaged_away(self):
         self.assertIsNone(self.errors.realisations(256, 9, 1e-3))  # b(9) is 2e-3

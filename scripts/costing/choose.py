@@ -84,3 +84,14 @@ def best(errors, costs, wanted, clock):
                 found.append({"wanted": wanted, "size": size, "points": points, "realisations": count, "predicted": math.hypot(varying / math.sqrt(count), bias),
                               **costs.predict(size, points, count)})
     return min(found, key=lambda choice: choice[clock], default=None)
+
+
+def pixels(points, clock):
+    """Which image resolution adds a wanted error, by the laws of error and time over pixels a side: [{"wanted", "pixels", clock, "measured"}];
+    `measured` is False beyond the largest image measured. None where no law was found."""
+    sides = [p["pixels"] for p in points]
+    error, time = (laws.power(sides, [p[key] for p in points]) for key in ("y", clock))
+    if len(points) < 3 or error["slope"] >= 0:
+        return None
+    found = [(wanted, math.ceil((wanted / error["factor"]) ** (1 / error["slope"]))) for wanted in TARGETS]
+    return [{"wanted": wanted, "pixels": side, clock: laws.at(time, side), "measured": side <= max(sides)} for wanted, side in found]

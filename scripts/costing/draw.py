@@ -7,11 +7,14 @@ CLOCKS = {"seconds": "wall seconds, one thread", "cpu_seconds": "processor secon
 SURFACES = "Beckmann, α = 0.5, correlation length 8 cells; views 60°, 75° and 85°; relative error of G1, root of the mean square over views and slope bins"
 
 
-def series(name, points, x, y="y", fit=True):
-    """Points whose y is nothing or 0 are not drawn. A power law needs three of them."""
+def series(name, points, x, y="y"):
+    """Points whose y is nothing or 0 are not drawn. A power law needs three of them; of memory, three that take half as much again as
+    the smallest, for below that it is the program's own."""
     kept = [{"x": p[x], "y": p[y], "label": p["label"], "y_error": p.get("y_error") if y == "y" else None,
              **{key: p[key] for key in ("seconds", "cpu_seconds", "megabytes")}} for p in points if p[y]]
-    law = laws.power([p["x"] for p in kept], [p["y"] for p in kept]) if fit and len(kept) > 2 else None
+    least = min((p["megabytes"] for p in kept), default=0)
+    telling = [p for p in kept if "megabytes" not in (x, y) or p["megabytes"] >= 1.5 * least]
+    law = laws.power([p["x"] for p in telling], [p["y"] for p in telling]) if len(telling) > 2 else None
     return {"name": name, "line": False, "points": kept, **({"fit": law} if law else {"line": True})}
 
 
@@ -28,7 +31,7 @@ def curves(found, clock, command):
              f"surfaces against the pool. As scatter falls with the root of the area and time grows with the area, a slope of −1/2 is what to expect of both, and "
              "whichever lies lower is the better way to spend time.")
     yield "2-grid-memory", dict(common, title="Explicit surfaces: grid size and memory", x=memory, text="The same grids against the peak memory of the larger "
-                                "process. Realisations cost none.", series=[series("one surface of N² cells", sizes["points"], "megabytes")])
+                                "process. Realisations cost none; small grids no more than the program itself.", series=[series("one surface of N² cells", sizes["points"], "megabytes")])
     yield "3-points", dict(common, title="Explicit surfaces: points per facet and tracer", series=[
         series(tracer, points, clock) for tracer, points in samples["series"].items()],
         text=f"The same surfaces of {samples['size']}² cells looked at with K points a facet, against 225 points by the exact tracer. Bins of facets seen at grazing "
@@ -46,5 +49,5 @@ def curves(found, clock, command):
             drawn.append(series("making the surface", [dict(c, label=f"N {n}", facets=2 * n * n) for n, c in sizes["makes"].items()], "facets", key))
         yield name, dict(command=command, title=f"Explicit surfaces: {'time' if key == clock else 'memory'} by size and tracer", series=drawn,
                          text="Three views, 9 points a facet, with the bits written. " + ("Slope 1 is linear in facets; below it, the start of the program shows."
-                                                                                        if key == clock else "Of the larger process, where POV-Ray is another."),
+                                                                                        if key == clock else "Of the larger process, where POV-Ray is another. Slopes leave out runs that take less than half as much again as the smallest."),
                          x={"label": "facets", "log": True}, y=axis)

@@ -96,7 +96,8 @@ def run(options, build):
     used = [p for points in found["pool"]["series"].values() for p in points]
     result = {"command": options.command, "clock": options.clock, "tracers": found["scales"]["versions"], "choices": found["choices"],
               "busy": sum(p["seconds"] for p in used) / sum(p["cpu_seconds"] for p in used), "scales": found["scales"]["rows"],
-              "slopes": {curve["title"]: {s["name"]: s["fit"] for s in curve["series"] if s.get("fit")} for _, curve in curves},
+              "images": {name: choose.pixels(points, options.clock) for name, points in found["images"]["series"].items()} if found["images"] else {},
+              "image_size": plan.image_size, "slopes": {curve["title"]: {s["name"]: s["fit"] for s in curve["series"] if s.get("fit")} for _, curve in curves},
               "reference_error": found["sizes"]["reference_error"], "seconds": round(time.monotonic() - start, 1)}
     write(folder / "costs.json", result)
     text = tables.fragment(result, [curve for _, curve in curves])

@@ -43,6 +43,9 @@ def summary(result):
     yield "for an error of G1 per slope bin of:"
     for cells in [heads(clock), *(choice(row, clock) for row in result["choices"]["rows"])]:
         yield "  " + " ".join(f"{str(cell):>{width}}" for cell, width in zip(cells, (8, 7, 5, 4, 7, 7, 12, 6, 18, 18)))
+    for name, chosen in result["images"].items():
+        if chosen:
+            yield f"  images, {name}: " + ", ".join(f"{percent(c['wanted'])} {c['pixels']}{'' if c['measured'] else '*'}" for c in chosen)
     for title, found in result["slopes"].items():
         for name, law in found.items():
             yield f"  {title}, {name}: slope {power(law)}"
@@ -60,6 +63,7 @@ def fragment(result, curves):
     clock = result["clock"]
     differing = [[tracer, name, ", ".join(map(str, sizes)), different, of] for (tracer, name), (different, of, sizes) in bits(result["scales"]).items()]
     slopes = [[title.partition(": ")[2], name, power(law), law["points"]] for title, found in result["slopes"].items() for name, law in found.items()]
+    images = [[name, *(f"{c['pixels']}{'' if c['measured'] else '*'}, {c[clock]:.3g} s" for c in chosen)] for name, chosen in result["images"].items() if chosen]
     busy = ("" if result["busy"] < 1.2 else f"<p class=faint>The machine was busy: wall time was {result['busy']:.1f} times processor time. Times by the wall clock, and "
             "slopes in them, are too large and uneven; measure again on an idle machine, or with <code>--clock cpu</code>.</p>")
     return (
@@ -70,6 +74,9 @@ def fragment(result, curves):
         "over N and R, the points’ scatter, and what all surfaces of a grid or all points share, which no averaging removes; a grid is offered only where that is known well enough. “Tried” is the same run anew four times with fresh seeds, where it takes little time and "
         f"the reference ({percent(result['reference_error'])}) knows better.</p>\n"
         + table(heads(clock), [choice(row, clock) for row in result["choices"]["rows"]])
+        + (f"<p>Pixels a side of POV-Ray’s images, and {UNIT[clock]} for three of them, that add no more than this error on a surface of {result['image_size']}² cells, by "
+           "the laws below (*: beyond the largest that was measured):</p>\n" + table(["image", *(percent(c["wanted"]) for c in next(filter(None, result["images"].values())))], images)
+           if images else "")
         + "<h3>Slopes</h3>\n<p>Exponents p of y = a x<sup>p</sup>, by least squares of the logarithms, with the standard error that the scatter about the line gives.</p>\n"
         + table(["study", "series", "slope", "points"], slopes)
         + "<h3>Bits</h3>\n<p>One bit tells whether a view sees a facet. M is baked into the vertices. How many are not those of the exact tracer, in double precision, "

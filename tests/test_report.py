@@ -140,6 +140,8 @@ class Report(unittest.TestCase):
         rows += [{"check": "control", "verdict": "FAILS"}, {"check": "G1 per slope", "verdict": "agrees"}, {"check": "G2 / (G1 G1)", "verdict": "differs as Smith is known to"}]
         (self.path / "validate" / "validate.json").write_text(json.dumps({"verdict": "FAILS", "checks": rows}))
         os.utime(self.path / "gallery" / "gallery.json", (1e9, 1e9))
+        for file in (self.path / "validate").iterdir():
+            os.utime(file, (1.2e9, 1.2e9))
         data = self.path / "out" / "report.json"
         done = self.run_report("--all", "--quick", "--part", "gallery", "--json", str(data))
         self.assertEqual((done.returncode, done.stdout), (1, f"{self.output}\n"), done.stderr)
@@ -150,6 +152,11 @@ class Report(unittest.TestCase):
         for fact in ("Parts that failed: gallery", "Part validate", "Part efficiency", 'id="geometry">', "This part is missing"):
             self.assertIn(fact, page.text)
         self.assertNotIn("Part gallery", page.text)
+        self.assertIn("Left by an earlier run, 2008-01-1", page.text)  # 1.2e9 seconds: January 10, 21:20 UTC
+        for c in told["claims"]:
+            if c["verdict"] != "not measured in this run":
+                c["number"], earlier, _ = c["number"].partition(" (earlier run, ")
+                self.assertTrue(earlier, c)
         said = {c["claim"].partition(".")[0]: (c["number"], c["verdict"]) for c in told["claims"]}
         self.assertEqual(said["Masking is invariant under linear maps of the microsurface"], ("3 of 2000 bits differ; the most in one comparison 3.0e-03", "agrees"))
         self.assertEqual(said["The cross-check would notice if it were not"][1], "FAILS")

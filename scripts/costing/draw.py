@@ -20,7 +20,7 @@ def series(name, points, x, y="y"):
 
 def curves(found, clock, command):
     time = {"label": CLOCKS[clock], "log": True}
-    memory, error = {"label": "peak memory, MB", "log": True}, {"label": "relative error of G1", "log": True}
+    memory, error = {"label": "peak memory, MB", "log": True}, {"label": "relative error", "log": True}
     common = {"command": command, "x": time, "y": error}
     sizes, samples, pool, scales = found["sizes"], found["samples"], found["pool"], found["scales"]
     one = pool["series"]["G1 per slope bin"]

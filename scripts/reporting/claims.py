@@ -121,12 +121,13 @@ CLAIMS = [
     ("The tests notice wrong formulas.", "Wrong versions of the core must be rejected, the right one not", "mutants", mutants)]
 
 
-def measured(data):
-    """[{"claim", "tested", "section", "number", "verdict"}]"""
+def measured(data, older=()):
+    """[{"claim", "tested", "section", "number", "verdict"}]; older: when sections were made that this run did not."""
     found = []
     for claim, tested, section, measure in CLAIMS:
         try:
             number, verdict = measure(data)
+            number += f" (earlier run, {older[section]})" if section in older else ""
         except (KeyError, TypeError, ValueError, StopIteration, IndexError):
             number, verdict = "", MISSING
         found.append({"claim": claim, "tested": tested, "section": section, "number": number, "verdict": verdict})

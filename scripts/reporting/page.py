@@ -43,12 +43,12 @@ def strict(value):
 
 def make(options, build, ran=None):
     """(the page, the same as data). ran: what parts.run() says; without it, a broken input is an error."""
-    found, data = sections.collect(options, {part["name"]: part for part in ran} if ran is not None else None)
+    found, data, older = sections.collect(options, {part["name"]: part for part in ran} if ran is not None else None)
     validation = data.get("validate", {})
     data["versions"] = dict(versions.gather(build, validation))
     shown = [(name, title, text) for name, title, text in found] + [("versions", "Versions", versions.section(data["versions"].items()))]
     if ran is not None:
-        data["parts"], data["claims"] = ran, claims.measured(data)
+        data["parts"], data["claims"] = ran, claims.measured(data, older)
         shown = [("claims", "Claims", claims.section(data["claims"])), *shown, ("parts", "Command lines", parts.section(ran))]
     verdict = f" Cross-check: {validation['verdict']}." if validation else ""
     failed = [part["name"] for part in ran or [] if part["code"]]

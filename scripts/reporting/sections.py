@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """The sections of the page in their order, each from the folder or file that a part of the report leaves."""
+import datetime
 import html
 import json
 import pathlib
@@ -52,9 +53,19 @@ def missing(name, title, why):
     return f'<h2 id="{name}">{html.escape(title)}</h2>\n<p class="missing">This part is missing: {html.escape(why)}.</p>'
 
 
+def written(path):
+    """When the file, or the folder's latest file, was written; nothing if there is none."""
+    path = pathlib.Path(path)
+    times = [file.stat().st_mtime for file in (path.iterdir() if path.is_dir() else [path] if path.exists() else [])]
+    return f"{datetime.datetime.fromtimestamp(max(times)).astimezone():%Y-%m-%d %H:%M}" if times else ""
+
+
 def collect(options, parts):
-    """([(name, title, HTML)], data). parts: how this run's parts ended, by name, or None: then a broken input is an error."""
-    found, data = [], {}
+    """([(name, title, HTML)], data, {name: when}). parts: how this run's parts ended, by name, or None: then a broken input is an error.
+
+    The last are sections that an earlier run left, with the time of their files.
+    """
+    found, data, older = [], {}, {}
     for name, title, _, load in SECTIONS:
         path, part = getattr(options, name), (parts or {}).get(name)
         if not path:
@@ -64,10 +75,13 @@ def collect(options, parts):
             continue
         try:
             data[name], text = load(path)
+            if parts is not None and not part and data[name] is not None:
+                older[name] = written(path)
+                text += f"\n<p class=faint>Left by an earlier run, {older[name]}.</p>"
             found.append((name, title, text))
         except ERRORS as error:
             if parts is None:
                 raise
             data.pop(name, None)
             found.append((name, title, missing(name, title, f"{type(error).__name__}: {error}")))
-    return found, data
+    return found, data, older

@@ -70,7 +70,7 @@ class Laboratory:
                                    "--transform", listed(m.ravel()), "--threads", 1, *(["--bits", bits] if bits else []))
         found = json.loads(found)
         g1 = [[np.nan if b["G1"] is None else b["G1"] for b in v["bins"]] for v in found["views"]]
-        return np.array(g1, float), cost, found.get("tracer", "own")
+        return np.array(g1, float), cost, found.get("tracer", "exact, double precision")
 
     def albedo(self, file):
         """(share of light that mirrors let out after one reflection [view], cost)"""

@@ -122,9 +122,6 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     d->masking = (mu_masking_form)musurf_choice(&g, MASKING);
     d->transmission = musurf_number(&g, TRANSMISSION) != 0;
     d->multiple = (mu_scattering)musurf_choice(&g, MULTIPLE_SCATTERING);
-    if (d->multiple == MU_COMPENSATED && out->varying)
-        return musurf_fail(
-            host, MUSURF_UNSUPPORTED, MULTIPLE_SCATTERING,
-            "compensated needs a constant transform: its tables are of one; random_walk takes any");
+    d->compensation_varies = d->multiple == MU_COMPENSATED && out->varying;
     return judge(&g, d);
 }

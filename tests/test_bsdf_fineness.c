@@ -66,7 +66,7 @@ static void tables_are_shared(void **state) {
     float of_f;
     double of_d;
     make(&b, &d);
-    d.compensation_tables = mu_surface_tables_f(b.made);
+    d.compensation_tables = mu_surface_tables_f(b.made), d.compensation_borrows = 1;
     assert_non_null(d.compensation_tables);
     assert_true(mu_surface_bytes_d(&d) < 4096);
     void *memory = aligned_alloc(64, (mu_surface_bytes_d(&d) + 63) / 64 * 64);

@@ -36,8 +36,7 @@ static int bind_source(const albedo_source *s, const float w[3], closure *c) {
     return 1;
 }
 
-/* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
-static double core_of(const albedo_source *s, const closure *c) {
+double mu_albedo_core(const albedo_source *s, const closure *c) {
     const int is_gtr = s->definition->ndf == MU_GTR &&
                        c->kernel->plans[PLAN_GENERAL] == s->surface->kernel->plans[PLAN_GENERAL];
     return is_gtr ? fmin(1, (double)s->surface->alpha / s->surface->unit) : 1;
@@ -51,7 +50,7 @@ static float evaluate(const patch_maker *m, double u, double s) {
                         (float)albedo_s(m->table, (m->row + s) / ALBEDO_ROWS), w);
     for (int k = 0; k < 3; k++) w[k] *= m->turn;
     if (!bind_source(m->source, w, &c)) return 1;
-    const double allowed = fmin(m->source->error / 16, 1e-3);
+    const double allowed = fmin(m->source->error / 8, 1e-3);
     return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed), least);
 }
 
@@ -196,8 +195,8 @@ size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, 
     closure c;
     bind_source(source, up, &c);
     lay(&c, t);
-    const double core = core_of(source, &c);
-    t->roots = choose_roots(source, t, core);
+    const double core = mu_albedo_core(source, &c);
+    t->roots = source->roots ? source->roots - 1 : choose_roots(source, t, core);
     const int sides = source->surface->transmission ? 2 : 1;
     size_t used = 0;
     t->side[1].cells = 0;

@@ -128,9 +128,12 @@ typedef struct albedo_source {
     float blur;
     double error; /* that E may have */
     int halvings; /* of a patch along an axis, at most ALBEDO_HALVINGS */
+    int roots;    /* 1 + n; 0: chosen */
 } albedo_source;
 /* Makes a table in `most` floats; returns how many it took. */
 size_t mu_albedo_make(const albedo_source *source, mu_albedo *out, float *values, size_t most);
+/* Where slopes crowd, in slope units: gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too. */
+double mu_albedo_core(const albedo_source *source, const mu_closure_f *c);
 
 /* E(wo) of a closure of single scattering, by panels of azimuth that are halved until they agree to within `allowed`
  * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units. */

@@ -12,7 +12,7 @@
  * walks on this very surface end (albedo.c).
  *
  * Sampled by one of both lobes, as likely as each sends light on; pdf is that of the mixture. Where the surface is bound
- * with an M of the point, tables do not hold, and scattering is single.
+ * with an M of the point, and has no tables for it, scattering is single.
  */
 #include "core/bsdf/multiple.h"
 
@@ -36,9 +36,16 @@ static real chance(const closure *c, real lost) {
     return often > 0 ? often / (often + once) : 0;
 }
 
-void MU(compensated_bind)(closure *c, real blur) {
+void MU(compensated_bind)(closure *c, real blur, int moved) {
     mu_lobe *l = &c->lobe;
-    mu_albedo_set_choose(multiple_of(c->surface)->tables, (float)blur, l);
+    const mu_albedo_set *set = multiple_of(c->surface)->tables;
+    if (moved && set->grid.table) {
+        float v[4];
+        for (int k = 0; k < 4; k++) v[k] = (float)(c->map.view[k] / c->map.view_z);
+        mu_albedo_set_choose_at(set, blur > 0, v, l);
+    } else {
+        mu_albedo_set_choose(set, (float)blur, l);
+    }
     const float w[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]}, E = 1 - l->average[0];
     l->lost = w[2] > 0 ? lobe_lost(l, below(c), w, &l->density) : 0;
     for (int k = 0; k < 3; k++) { /* Kulla & Conty 2017, with Hill's second F (2018) */

@@ -94,6 +94,11 @@ static int tilts_too_much(const mu_definition *d) {
     return width > 0 && d->ndf != MU_TABULATED && hypot(d->tilt[0], d->tilt[1]) > 4 * width;
 }
 
+/* All azimuths alike, before M. */
+static int is_even(const mu_definition *d) {
+    return d->tilt[0] == 0 && d->tilt[1] == 0 && d->ndf != MU_TABULATED && d->ndf != MU_CUSTOM;
+}
+
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
     if (d->multiple == MU_COMPENSATED && !(d->compensation_error >= 1e-4 && d->compensation_error <= 0.5))
         return complain(why, "compensation_error", d->compensation_error,
@@ -110,6 +115,11 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
         right = "a random walk needs the visible sampler: it meets visible normals";
     } else if (d->multiple == MU_COMPENSATED && d->ndf == MU_CUSTOM && !d->custom_f) {
         right = "compensated needs custom_f: its tables are made in float";
+    } else if (d->multiple == MU_COMPENSATED && d->compensation_varies && d->transmission) {
+        right = "compensated needs reflection alone, or a constant M: the random walk takes any";
+    } else if (d->multiple == MU_COMPENSATED && d->compensation_varies && !is_even(d)) {
+        right = "compensated needs a level distribution that is isotropic before M, or a constant M: the "
+                "random walk takes any";
     } else if (d->multiple == MU_COMPENSATED && tilts_too_much(d)) {
         right = "compensated needs a tilt of at most 4 alpha, or its tables are too coarse: the random walk "
                 "takes any";

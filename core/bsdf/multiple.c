@@ -6,7 +6,7 @@
 size_t MU(multiple_bytes)(const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return 0;
     const size_t head = padded(sizeof(multiple));
-    if (d->multiple == MU_RANDOM_WALK || d->compensation_tables) return head;
+    if (d->multiple == MU_RANDOM_WALK || d->compensation_borrows) return head;
     return head + padded(mu_albedo_set_bytes(d));
 }
 
@@ -35,9 +35,9 @@ void MU(multiple_make)(surface *s, const mu_definition *d) {
     if (d->multiple == MU_SINGLE) return;
     char *memory = (char *)s + surface_head_bytes();
     multiple *m = (void *)memory;
-    *m = (multiple){.salt = d->salt, .tables = d->compensation_tables};
+    *m = (multiple){.salt = d->salt, .tables = d->compensation_borrows ? d->compensation_tables : NULL};
     MU(multiple_average)(s, m->average);
-    if (d->multiple == MU_RANDOM_WALK || m->tables) return;
+    if (d->multiple == MU_RANDOM_WALK || d->compensation_borrows) return;
     mu_albedo_set *tables = (void *)(memory + padded(sizeof *m));
     mu_albedo_set_make(d, tables);
     m->tables = tables;

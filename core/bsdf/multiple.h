@@ -34,8 +34,8 @@ void MU(multiple_average)(const surface *s, real average[3]);
 size_t MU(multiple_bytes)(const mu_definition *d);
 void MU(multiple_make)(surface *s, const mu_definition *d);
 
-/* Chooses the closure's tables, once its map is settled; blur as of mu_blur. */
-void MU(compensated_bind)(closure *c, real blur);
+/* Chooses the closure's tables, once its map is settled; blur as of mu_blur. `moved`: its map may be none of the definition's. */
+void MU(compensated_bind)(closure *c, real blur, int moved);
 void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3], value *out);
 void MU(compensated_sample)(const kernel *full, const closure *c, mu_sampler sampler, const real u[3],
                             sample *out);

@@ -67,7 +67,7 @@ size_t MU_SUFFIX(mu_surface_bytes)(const mu_definition *definition);
 MU_SUFFIX(mu_surface) * MU_SUFFIX(mu_surface_make)(const mu_definition *definition, void *memory);
 /* The tables of a compensated surface, for another one of the same definition; NULL if it has none. */
 const mu_albedo_set *MU_SUFFIX(mu_surface_tables)(const MU_SUFFIX(mu_surface) * surface);
-/* The most that an albedo in them may be off beyond compensation_error, where refining had to end before: else 0. */
+/* The most that an albedo in them was found to be off, where refining had to end above compensation_error: else 0. */
 MU_REAL MU_SUFFIX(mu_surface_tables_unsure)(const MU_SUFFIX(mu_surface) * surface);
 size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
 /* What the definition came down to: "ggx", "gtr table", "mirror", ... */

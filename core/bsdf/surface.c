@@ -139,10 +139,11 @@ surface *MU(mu_surface_make)(const mu_definition *d, void *memory) {
     s->table_bytes = p.kernel->table_bytes(&p.definition);
     if (!scatters_once(&p, d)) {
         if (d->multiple == MU_COMPENSATED) s->kernel = p.kernel->plans[PLAN_COMPENSATED];
+        if (d->multiple == MU_COMPENSATED && d->compensation_varies) s->general = s->kernel;
         if (d->multiple == MU_RANDOM_WALK) s->kernel = s->general = p.kernel->plans[PLAN_WALK];
         MU(multiple_make)(s, d);
         s->table_bytes += sizeof(multiple);
-        if (s->compensated && !d->compensation_tables) s->table_bytes += multiple_of(s)->tables->bytes;
+        if (s->compensated && !d->compensation_borrows) s->table_bytes += multiple_of(s)->tables->bytes;
     }
     /* What turns or mirrors alone leaves an isotropic microsurface as it is. */
     const double scale = hypot(d->transform[0], d->transform[1]), uniform[4] = {scale, 0, 0, scale};
@@ -194,7 +195,8 @@ int MU(mu_bind)(const surface *s, const real wo[3], const real transform[4], clo
     c->sigma = c->lambda = c->least2 = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     if (c->wo[2] >= 0) c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
-    if (s->compensated && !transform) MU(compensated_bind)(c, 0);
+    if (s->compensated && c->kernel == c->kernel->plans[PLAN_COMPENSATED])
+        MU(compensated_bind)(c, 0, transform != NULL);
     return c->wo[2] > 0;
 }
 
@@ -237,7 +239,7 @@ void MU(mu_blur)(closure *c, real alpha) {
     c->has_footprint = c->is_delta = 0;
     if (s->sampler == MU_SAMPLE_BOUNDED) c->least2 = square(smaller(map_least(&c->map), 1));
     c->kernel->view(c, c->wo, &c->sigma, &c->lambda);
-    if (s->compensated && c->kernel == c->kernel->plans[PLAN_COMPENSATED]) MU(compensated_bind)(c, alpha);
+    if (s->compensated && c->kernel == c->kernel->plans[PLAN_COMPENSATED]) MU(compensated_bind)(c, alpha, 1);
 }
 
 void MU(mu_eval)(const closure *c, const real wi[3], value *out) {

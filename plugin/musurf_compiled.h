@@ -23,7 +23,9 @@ struct musurf_material {
     uint32_t transmits;
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
-    char name[96]; /* the longest: "beckmann (std is beckmann here), general transform, double precision" */
+    float unsure; /* mu_surface_tables_unsure */
+    char name
+        [96]; /* the longest: "beckmann (std is beckmann here), general transform, double precision, albedo within 0.012" */
     char left_out[160];
 };
 

@@ -67,6 +67,10 @@ static void name_plan(musurf_material *m, const char *surface) {
     snprintf(m->name, sizeof m->name, "%s%s%s%s%s", surface, mirror ? "" : ", ",
              mirror ? "" : transform_class(p), mirror ? "" : " transform",
              m->in_float ? "" : ", double precision");
+    if (m->unsure > 0) {
+        const size_t length = strlen(m->name);
+        snprintf(m->name + length, sizeof m->name - length, ", albedo within %.2g", (double)m->unsure);
+    }
     if (p->definition.fresnel == MU_FRESNEL_NONE) append(m->left_out, sizeof m->left_out, "fresnel");
     if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
     if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0 && p->definition.ndf != MU_TABULATED)
@@ -77,6 +81,17 @@ static void name_plan(musurf_material *m, const char *surface) {
     if (m->in_float) append(m->left_out, sizeof m->left_out, "double precision");
     if (!mirror && !anisotropic(p)) append(m->left_out, sizeof m->left_out, "matrices");
     if (!(m->needs & MUSURF_NEEDS_TANGENT)) append(m->left_out, sizeof m->left_out, "tangents");
+}
+
+/* Refining ends somewhere: at what it left, if that is more than was meant. */
+static void warn_of_tables(const musurf_host *host, const musurf_material *m) {
+    char text[192];
+    if (!(m->unsure > 0) || !host || !COVERS(host, message) || !host->message) return;
+    snprintf(text, sizeof text,
+             "tables of compensation are off by up to %.2g of an albedo here, where %.2g is meant: "
+             "random_walk is exact",
+             (double)m->unsure, m->parsed.definition.compensation_error);
+    host->message(host->context, MUSURF_WARNING, MULTIPLE_SCATTERING, text);
 }
 
 static void *obtain(const musurf_host *host, size_t bytes) {
@@ -96,7 +111,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     const size_t head = padded(sizeof(musurf_material)),
                  double_bytes = padded(mu_surface_bytes_d(&p.definition));
     mu_definition borrows = p.definition; /* float shading takes the tables of double's */
-    borrows.compensation_tables = (const mu_albedo_set *)(const void *)&p;
+    borrows.compensation_borrows = 1;
     const size_t bytes = head + double_bytes + (in_float ? padded(mu_surface_bytes_f(&borrows)) : 0);
     musurf_material *m = obtain(host, bytes);
     if (!m) return MUSURF_NO_MEMORY;
@@ -108,7 +123,8 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
         m->context = host->context;
     }
     m->in_double = mu_surface_make_d(&p.definition, (char *)m + head);
-    p.definition.compensation_tables = mu_surface_tables_d(m->in_double);
+    p.definition.compensation_tables = mu_surface_tables_d(m->in_double),
+    p.definition.compensation_borrows = 1;
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
     m->parsed.definition.histogram = NULL; /* the host's */
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
@@ -133,6 +149,8 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     m->closure_bytes =
         (uint32_t)(offsetof(bound, closure) +
                    (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
+    m->unsure = (float)mu_surface_tables_unsure_d(m->in_double);
+    warn_of_tables(host, m);
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
     *out = m;
     return MUSURF_OK;

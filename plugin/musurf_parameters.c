@@ -153,7 +153,9 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      VALUES("", MUSURF_FOOTPRINT, MUSURF_MAY_VARY | MUSURF_NO_DEFAULT, -INFINITY, INFINITY, -1, 1, 0)},
     {HEAD(36, "multiple_scattering", "Multiple scattering"),
      "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, "
-     "from tables made at compile time; transform must be constant), or random_walk (followed on the "
+     "from tables made at compile time, which takes seconds where transform varies; then it serves "
+     "reflection by "
+     "what is level, at slope roughnesses of 1/128 to 2), or random_walk (followed on the "
      "microsurface: the reference, but noisy).",
      CHOICE("none", multiple_choices)},
     {HEAD(37, "smith", "Smith masking"),

@@ -138,6 +138,18 @@ class Explain(unittest.TestCase):
         self.assertEqual([os.path.basename(p) for p in metal["plugins"]], ["musurf_material.so"])
         self.assertIn("musurf_material.so", self.maps_while_rendering(with_material()))
 
+    def test_tables_that_miss_their_error_say_so(self):
+        """And only those: a heavy tail under a mirror under 100:1 needs finer cells than there are; a shear does not."""
+        for parameters, missed in ((dict(ndf="std", alpha=0.3, gamma=1.6, transform=[[1, 0], [0, 100]]), True),
+                                   (dict(alpha=0.3, transform=[[1, 2], [0, 1]]), False)):
+            with self.subTest(missed=missed):
+                change = with_material(multiple_scattering="compensated", **parameters)
+                done = musurf("render", self.write(change), "--explain")
+                self.assertEqual(done.returncode, 0, done.err)
+                plan = strict(done.out)["materials"][0]["plan"]
+                self.assertEqual("albedo within 0.0" in plan, missed)
+                self.assertEqual("tables of compensation are off by up to 0.0" in done.err, missed)
+
     def test_tables_are_built_only_for_what_is_drawn(self):
         self.make_sky()
         self.assertEqual(self.explain({})["lights"], {"table_bytes": 0, "image_bytes": 0})

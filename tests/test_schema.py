@@ -97,6 +97,9 @@ class Schema(unittest.TestCase):
         rng = random.Random(seed)
         objects = [example(schema, rng) for _ in range(count)]
         objects = [spoil(o, rng) if k % 2 else o for k, o in enumerate(objects)]
+        for o in objects:  # its tables take seconds each: test_bsdf_varying.c judges them, and dozens of them are no better
+            if isinstance(o, dict) and o.get("multiple_scattering") == "compensated":
+                o.pop("jacobian", None)
         out = answers(musurf("eval", stdin=[{"material": o, "wo": [0, 0, 1]} for o in objects]))
         judged = {True: 0, False: 0}
         for o, answer in zip(objects, out, strict=True):

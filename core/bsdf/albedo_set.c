@@ -34,11 +34,17 @@ static mu_definition blurred(const mu_definition *single) {
     return ggx;
 }
 
+static int grid_steps(const mu_definition *d) {
+    const int heavy = d->ndf == MU_GGX || d->ndf == MU_DISCRETE_GGX ||
+                      ((d->ndf == MU_GTR || d->ndf == MU_STD) && d->gamma <= 2);
+    return heavy ? ALBEDO_HEAVY_STEPS : ALBEDO_STEPS;
+}
+
 /* Of a grid of its own, and of GGX's. */
 static size_t grid_tables(const mu_definition *d) {
     if (!d->compensation_varies) return 0;
-    const int ggx = albedo_grid_tables(ALBEDO_GGX_STEPS);
-    return (size_t)(d->ndf == MU_GGX ? ggx : ggx + albedo_grid_tables(ALBEDO_STEPS));
+    const int ggx = albedo_grid_tables(ALBEDO_HEAVY_STEPS);
+    return (size_t)(d->ndf == MU_GGX ? ggx : ggx + albedo_grid_tables(grid_steps(d)));
 }
 /* Values; tables of grids; the surfaces that they are made from. */
 static size_t values_bytes(const mu_definition *d) {
@@ -85,15 +91,15 @@ static size_t make_grid(const albedo_source *source, int steps, mu_albedo *table
 /* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
 static size_t make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
                          size_t used) {
-    const int is_ggx = source->definition->ndf == MU_GGX;
+    const int is_ggx = source->definition->ndf == MU_GGX, steps = grid_steps(source->definition);
     const mu_definition ggx = blurred(source->definition);
-    used += make_grid(source, is_ggx ? ALBEDO_GGX_STEPS : ALBEDO_STEPS, table, out->values + used, &out->grid,
-                      &out->unsure);
+    used += make_grid(source, steps, table, out->values + used, &out->grid, &out->unsure);
     out->blurred = out->grid;
     if (is_ggx) return used;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
-    table += albedo_grid_tables(ALBEDO_STEPS);
-    return used + make_grid(source, ALBEDO_GGX_STEPS, table, out->values + used, &out->blurred, &out->unsure);
+    table += albedo_grid_tables(steps);
+    return used +
+           make_grid(source, ALBEDO_HEAVY_STEPS, table, out->values + used, &out->blurred, &out->unsure);
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {

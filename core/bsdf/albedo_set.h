@@ -16,12 +16,12 @@
 
 enum { ALBEDO_BLURS = 10 };
 
-/* From the least slope roughness of a grid to its most, in octaves, and steps of an octave: of GGX, and of any other, which
- * changes faster. Floats that its tables take, as a mean and at most. */
+/* From the least slope roughness of a grid to its most, in octaves, and steps of an octave: of GGX and heavier tails, and of any other,
+ * which changes faster. Floats that its tables take, as a mean and at most. */
 #define ALBEDO_GRID_LEAST (1 / 128.0f)
 enum {
     ALBEDO_OCTAVES = 8,
-    ALBEDO_GGX_STEPS = 2,
+    ALBEDO_HEAVY_STEPS = 2,
     ALBEDO_STEPS = 3,
     ALBEDO_GRID_MEAN = 1 << 10,
     ALBEDO_GRID_MOST = 1 << 12

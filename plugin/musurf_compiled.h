@@ -27,6 +27,7 @@ struct musurf_material {
     char name
         [96]; /* the longest: "beckmann (std is beckmann here), general transform, double precision, albedo within 0.012" */
     char left_out[160];
+    char sampler[128];
 };
 
 typedef struct bound {
@@ -37,8 +38,9 @@ typedef struct bound {
     } closure;
 } bound;
 
-/* What sampler "auto" comes down to; `memory` holds a double surface of the definition. */
-mu_sampler musurf_choose_sampler(const mu_definition *definition, void *memory);
+/* What sampler "auto" comes down to; `memory` holds its surface, in the precision it is shaded in. *noise: variance of its weights
+ * over that of visible normals'; NAN if there was nothing to choose from. */
+mu_sampler musurf_choose_sampler(const mu_definition *definition, int in_float, void *memory, double *noise);
 
 extern const musurf_probe musurf_probe_table;
 

@@ -94,6 +94,24 @@ static void warn_of_tables(const musurf_host *host, const musurf_material *m) {
     host->message(host->context, MUSURF_WARNING, MULTIPLE_SCATTERING, text);
 }
 
+/* Why the directions of this material are drawn as they are. */
+static void name_sampler(musurf_material *m, double noise) {
+    const mu_definition *d = &m->parsed.definition;
+    const char *name = musurf_parameters[SAMPLER_CHOICE - 1].choices[d->sampler];
+    const size_t size = sizeof m->sampler;
+    if (mu_is_mirror(d))
+        snprintf(m->sampler, size, "none: a mirror");
+    else if (d->multiple == MU_RANDOM_WALK)
+        snprintf(m->sampler, size, "walk: on the microsurface");
+    else if (!m->parsed.sampler_auto)
+        snprintf(m->sampler, size, "%s: as set, or by default", name);
+    else if (isnan(noise))
+        snprintf(m->sampler, size, "%s: no other serves this material", name);
+    else
+        snprintf(m->sampler, size, "%s: least noise measured, %.2f of visible's variance in a white furnace", name,
+                 noise);
+}
+
 static void *obtain(const musurf_host *host, size_t bytes) {
     if (host && COVERS(host, release) && host->allocate)
         return host->allocate(host->context, bytes, MU_ALIGNMENT);
@@ -116,7 +134,9 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     musurf_material *m = obtain(host, bytes);
     if (!m) return MUSURF_NO_MEMORY;
     memset(m, 0, sizeof *m);
-    if (p.sampler_auto) p.definition.sampler = musurf_choose_sampler(&p.definition, (char *)m + head);
+    double noise = NAN;
+    if (p.sampler_auto && !mu_is_mirror(&p.definition) && p.definition.multiple != MU_RANDOM_WALK)
+        p.definition.sampler = musurf_choose_sampler(&p.definition, in_float, (char *)m + head + (in_float ? double_bytes : 0), &noise);
     m->parsed = p;
     if (host && COVERS(host, release) && host->allocate) {
         m->release = host->release;
@@ -151,6 +171,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
                    (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
     m->unsure = (float)mu_surface_tables_unsure_d(m->in_double);
     warn_of_tables(host, m);
+    name_sampler(m, noise);
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));
     *out = m;
     return MUSURF_OK;
@@ -185,6 +206,7 @@ static void describe(const musurf_material *m, musurf_plan *plan) {
         .material_bytes = m->bytes,
         .name = m->name,
         .left_out = m->left_out,
+        .sampler = m->sampler,
     };
     memcpy(plan, &full, plan->size < sizeof full ? plan->size : sizeof full);
 }

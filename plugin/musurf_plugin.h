@@ -116,7 +116,8 @@ enum {
 /*
  * The one home of a parameter's name, kind, range, default, unit and documentation: scene files, `musurf info`
  * and host user interfaces are made from this table. A dot in a name nests: "fresnel.schlick" is the color that
- * goes with the choice "schlick" of the choice parameter "fresnel".
+ * goes with the choice "schlick" of the choice parameter "fresnel". A choice parameter "sampler" that offers "auto" picks
+ * what draws directions with the least noise: a host that renders should set it where the user leaves it open.
  */
 typedef struct musurf_param {
     uint32_t size;
@@ -216,6 +217,7 @@ typedef struct musurf_plan {
     uint32_t material_bytes;
     const char *name;     /* the chosen plan, for people and tests: "gtr general-transform table" */
     const char *left_out; /* what this material did not need, comma-separated; lives with the material */
+    const char *sampler;  /* what draws its directions, and why; lives with the material. May be NULL */
 } musurf_plan;
 
 typedef struct musurf_material_type {

@@ -31,11 +31,11 @@ static void cold_structs_have_golden_layouts(void **state) {
     AT(musurf_setting, size, 0), AT(musurf_setting, param, 4), AT(musurf_setting, source, 8);
     AT(musurf_setting, slot, 12), AT(musurf_setting, values, 16), AT(musurf_setting, text, 24);
     AT(musurf_setting, count, 32);
-    assert_int_equal(sizeof(musurf_plan), 48);
+    assert_int_equal(sizeof(musurf_plan), 56);
     AT(musurf_plan, size, 0), AT(musurf_plan, closure_bytes, 4), AT(musurf_plan, closure_alignment, 8);
     AT(musurf_plan, lobes, 12), AT(musurf_plan, needs, 16), AT(musurf_plan, slot_floats, 20);
     AT(musurf_plan, table_bytes, 24), AT(musurf_plan, material_bytes, 28), AT(musurf_plan, name, 32);
-    AT(musurf_plan, left_out, 40);
+    AT(musurf_plan, left_out, 40), AT(musurf_plan, sampler, 48);
     assert_int_equal(sizeof(musurf_material_type), 136);
     AT(musurf_material_type, size, 0), AT(musurf_material_type, param_count, 4),
         AT(musurf_material_type, id, 8);

@@ -28,7 +28,7 @@ FULL = {
     "$schema": "x", "musurf": 1, "description": "all there is",
     "camera": {"type": "orthographic", "position": [1, -4, 2], "target": [0, 0, 0], "up": [0, 0, 1], "height": 3},
     "film": {"width": 4, "height": 4, "filter": "box", "radius": 0.5, "exposure": 1, "pixels": "float"},
-    "integrator": {"samples": 1, "depth": 2, "roulette": 3, "seed": 4, "light_sampling": True},
+    "integrator": {"samples": 1, "depth": 2, "roulette": 3, "seed": 4, "light_sampling": True, "light_candidates": 9},
     "materials": {"clay": {"material": "template.lambert", "reflectance": 0.6}},
     "meshes": {"tile": {"file": "tile.obj"}},
     "objects": [

@@ -147,8 +147,16 @@ static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_
     return compile(material, settings, place, error) && describe(material, place, error);
 }
 
+/* What draws directions is the renderer's to choose where the material does not say: it asks the plugin to measure. */
+static void measure_sampler(const musurf_material_type *type, mu_settings *settings) {
+    const musurf_param *p = mu_type_find(type, "sampler");
+    if (!p || p->kind != MUSURF_CHOICE || mu_settings_find(settings, p)) return;
+    for (const char *const *choice = p->choices; choice && *choice; choice++)
+        if (strcmp(*choice, "auto") == 0) mu_settings_add(settings, p)->text = *choice;
+}
+
 static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
-                           mu_error *error) {
+                           _Bool to_render, mu_error *error) {
     static const char *const reserved[] = {"material", "jacobian", NULL};
     *material = (mu_material){.transform = {1, 0, 0, 1}};
     if (!json_is_object(place->value)) return mu_place_only(place, reserved, error);
@@ -162,6 +170,7 @@ static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_
 
     mu_settings settings;
     if (!mu_settings_read(&settings, material->type, place, reserved, error)) return 0;
+    if (to_render) measure_sampler(material->type, &settings);
     read_transform(material, &settings);
     material->digest = digest_of(&settings);
     _Bool good = 1;
@@ -175,12 +184,12 @@ static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_
 }
 
 _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error) {
-    return read_material(material, plugins, place, 0, error);
+    return read_material(material, plugins, place, 0, 0, error);
 }
 
-_Bool mu_material_read_deforming(mu_material *material, mu_plugins *plugins, const mu_place *place,
-                                 mu_error *error) {
-    return read_material(material, plugins, place, 1, error);
+_Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, const mu_place *place,
+                                 _Bool deforming, mu_error *error) {
+    return read_material(material, plugins, place, deforming, 1, error);
 }
 
 void mu_material_free(mu_material *material) {

@@ -46,8 +46,10 @@ typedef struct mu_material {
 /* The material described by the object at `place`. The plugin's own message about a parameter is put into the
  * error with that parameter's place in the document. */
 _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error);
-/* The same for an object that deforms. If its type has no transform that may vary, `tension` is not set. */
-_Bool mu_material_read_deforming(mu_material *material, mu_plugins *plugins, const mu_place *place, mu_error *error);
+/* The same for a picture: with "sampler": "auto" where the plugin's sampler has that choice and the material names none.
+ * `deforming`: of an object that deforms; if its type has no transform that may vary, `tension` is not set. */
+_Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, const mu_place *place,
+                                 _Bool deforming, mu_error *error);
 void mu_material_free(mu_material *material);
 
 #endif

@@ -12,9 +12,10 @@
  * be met, that ray is left out.
  */
 #include <float.h>
+#include <string.h>
 
+#include "core/render/direct.h"
 #include "core/render/path.h"
-#include "core/render/shading.h"
 
 /* How a ray came to be, which decides the weight of the light it finds. */
 typedef struct mu_arrival {
@@ -43,20 +44,13 @@ typedef struct mu_shadow {
     _Bool cast;
 } mu_shadow;
 
-/* Draws of one event: 3 for the light, 3 for the BSDF, 1 for roulette. Each event starts at its own
+/* Draws of one event: 4 for the light, 3 for the BSDF, 1 for roulette. Each event starts at its own
  * dimension, whatever the ones before it used, so that the samples of a pixel stay stratified together. */
-enum { CAMERA_DRAWS = 2, EVENT_DRAWS = 7 };
+enum { CAMERA_DRAWS = 2, LIGHT_DRAWS = 4, EVENT_DRAWS = 8 };
 
 /* Shadow rays end short of the light by this share of the distance, lest float rounding of origin, direction
  * and distance let them meet the light itself. What is nearer to a light than that throws no shadow. */
 #define SHORT_OF_LIGHT (1 - 1e-4f)
-
-/* own^2 / (own^2 + other^2), without overflow */
-static float power_heuristic(float own, float other) {
-    if (!(own > 0)) return 0;
-    const float ratio = other / own;
-    return 1 / (1 + ratio * ratio);
-}
 
 /* No NaN, infinity or negative value may ever reach the film; whoever sees `refused` above 0 has found a bug.
  */
@@ -72,33 +66,36 @@ static void add(mu_radiance *out, const float throughput[3], const float radianc
     for (int c = 0; c < 3; c++) out->rgb[c] += rgb[c];
 }
 
+/* Candidates of a light sample along each side of the light's square. */
+static uint32_t light_cells(const mu_tracer *tracer) {
+    const uint32_t n = tracer->scene->integrator.light_cells;
+    return n ? n : 1;
+}
+
 /* Light found by following the BSDF; light_pdf 0: light sampling never finds it. */
-static float weight_found(const mu_path_options *options, const mu_arrival *arrival, float light_pdf) {
+static float weight_found(const mu_tracer *tracer, const mu_path_options *options, const mu_arrival *arrival,
+                          float light_pdf) {
     if (arrival->certain || options->strategy == MU_BSDF_ONLY || !(light_pdf > 0)) return 1;
-    return options->strategy == MU_LIGHT_ONLY ? 0 : power_heuristic(arrival->pdf, light_pdf);
+    if (options->strategy == MU_LIGHT_ONLY) return 0;
+    const uint32_t n = light_cells(tracer);
+    return mu_power_heuristic(arrival->pdf, (float)(n * n) * light_pdf);
 }
 
 static void sample_light(const mu_tracer *tracer, const mu_path_options *options, uint32_t choices,
                          const mu_shading *shading, mu_walk *walk, mu_shadow *shadow) {
-    float u[3] = {0};
-    if (mu_lights_met(tracer->lights))
-        mu_random_pair(&walk->random, u); /* else they are all points at infinity */
-    if (choices > 1) u[2] = mu_random_one(&walk->random);
-    mu_light_sample light;
-    mu_lights_sample(tracer->lights, shading->hit->p, u, &light);
-    if (!(light.pdf > 0) || (options->strategy == MU_BSDF_ONLY && !light.delta)) return;
-    const mu_vec3 local = mu_to_local(&shading->frame, light.direction);
-    if (!mu_shading_agrees(shading, light.direction, local.z)) return;
-    const float wi[3] = {local.x, local.y, local.z};
-    musurf_value value;
-    shading->type->eval(shading->closure, wi, MUSURF_ALL_LOBES, &value);
-    if (!value.lobes) return;
-    shadow->weight = 1 / light.pdf;
-    if (!light.delta && options->strategy == MU_BOTH) shadow->weight *= power_heuristic(light.pdf, value.pdf);
-    for (int c = 0; c < 3; c++) {
-        shadow->throughput[c] = walk->throughput[c];
-        shadow->arriving[c] = value.f[c] * light.radiance[c];
+    float u[4] = {0};
+    if (mu_lights_met(tracer->lights)) { /* else they are all points at infinity */
+        mu_random_pair(&walk->random, u);
+        if (light_cells(tracer) > 1) u[3] = mu_random_one(&walk->random);
     }
+    if (choices > 1) u[2] = mu_random_one(&walk->random);
+    mu_direct light;
+    if (!mu_direct_choose(tracer->lights, shading, light_cells(tracer), u, options->strategy == MU_BOTH,
+                          options->strategy == MU_BSDF_ONLY, &light))
+        return;
+    shadow->weight = light.weight;
+    memcpy(shadow->throughput, walk->throughput, sizeof shadow->throughput);
+    memcpy(shadow->arriving, light.arriving, sizeof shadow->arriving);
     shadow->ray = mu_geometry_leave(shading->hit, light.direction, light.distance * SHORT_OF_LIGHT);
     shadow->cast = 1;
     walk->out->rays++;
@@ -160,7 +157,7 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
     shadow->cast = 0;
     if (!hit) {
         mu_lights_escaped(tracer->lights, walk->ray.direction, radiance, &light_pdf);
-        add(out, walk->throughput, radiance, weight_found(options, &walk->arrival, light_pdf));
+        add(out, walk->throughput, radiance, weight_found(tracer, options, &walk->arrival, light_pdf));
         return 0;
     }
     if (event == 0) {
@@ -173,7 +170,7 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
     if (object->light != MU_NO_INDEX) {
         mu_lights_hit(tracer->lights, object->light, walk->arrival.from, walk->ray.direction, hit->distance,
                       radiance, &light_pdf);
-        add(out, walk->throughput, radiance, weight_found(options, &walk->arrival, light_pdf));
+        add(out, walk->throughput, radiance, weight_found(tracer, options, &walk->arrival, light_pdf));
         return 0;
     }
     if (event == scene->integrator.depth) return 0;
@@ -195,7 +192,7 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
     if (choices && (shading.lobes & ~(uint32_t)MUSURF_DELTA_LOBES))
         sample_light(tracer, options, choices, &shading, walk, shadow);
     if (event + 1 == scene->integrator.depth && !mu_lights_met(tracer->lights)) return 0;
-    walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS + 3;
+    walk->random.dimension = CAMERA_DRAWS + event * EVENT_DRAWS + LIGHT_DRAWS;
     if (!scatter(tracer, &shading, walk)) return 0;
     if (event + 1 >= scene->integrator.roulette &&
         !survives(&walk->random, walk->throughput, walk->compressed))

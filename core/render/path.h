@@ -3,7 +3,7 @@
 /*
  * path.h: the path tracer behind integrator.h, with what only comparisons need to choose.
  *
- * At each scattering event a light and the BSDF are both sampled; the two are combined by the power heuristic
+ * At each scattering event a light (direct.h) and the BSDF are both sampled; the two are combined by the power heuristic
  * of Veach, "Robust Monte Carlo methods for light transport simulation", 1997, section 9.2.4.
  */
 #ifndef MU_PATH_H

@@ -41,6 +41,7 @@ typedef struct mu_integrator_settings {
     uint32_t samples;  /* per pixel, unless the command line says otherwise */
     _Bool
         bsdf_only; /* light is found by following the BSDF alone, but for lights that are points or directions */
+    uint32_t light_cells; /* a light sample is chosen among the square of this many candidates; 0 is 1 */
     uint64_t seed;
 } mu_integrator_settings;
 

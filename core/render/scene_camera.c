@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* scene_camera.c: "camera", "film" and "integrator": where from, onto what, and how much work. */
+#include <math.h>
+
 #include "core/render/affine.h"
+#include "core/render/direct.h"
 #include "core/render/scene_read.h"
 
 static mu_dvec3 widen(mu_vec3 v) {
@@ -78,7 +81,7 @@ _Bool mu_read_integrator(mu_reader *reader) {
     mu_integrator_settings *integrator = &reader->scene->integrator;
     mu_error *error = reader->error;
     const mu_place place = mu_place_member(&reader->root, "integrator");
-    *integrator = (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .seed = 0};
+    *integrator = (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .seed = 0};
     if (!place.value) return 1;
     if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
         !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||
@@ -90,6 +93,12 @@ _Bool mu_read_integrator(mu_reader *reader) {
     long long value;
     if (lights.value && !mu_place_flag(&lights, &sampled, error)) return 0;
     integrator->bsdf_only = !sampled;
+    uint32_t candidates = integrator->light_cells * integrator->light_cells;
+    const mu_place of_light = mu_place_member(&place, "light_candidates");
+    if (!mu_read_count(&place, "light_candidates", 1, MU_LIGHT_CELLS * MU_LIGHT_CELLS, &candidates, error)) return 0;
+    integrator->light_cells = (uint32_t)lround(sqrt((double)candidates));
+    if (integrator->light_cells * integrator->light_cells != candidates)
+        return mu_place_fail(&of_light, error, "is %u; 1, 4, 9 or 16 is needed", candidates);
     if (!seed.value) return 1;
     if (!mu_place_integer(&seed, 0, 1ll << 53, &value, error)) return 0;
     integrator->seed = (uint64_t)value;

@@ -17,8 +17,7 @@ static _Bool add(mu_reader *reader, const mu_place *definition, const char *name
     mu_material material = {0};
     char *copy = strdup(name);
     if (!copy) return mu_fail(reader->error, "not enough memory for the scene");
-    if (!(deforming ? mu_material_read_deforming : mu_material_read)(&material, scene->plugins, definition,
-                                                                     reader->error)) {
+    if (!mu_material_read_to_render(&material, scene->plugins, definition, deforming, reader->error)) {
         free(copy);
         return 0;
     }
@@ -67,7 +66,7 @@ _Bool mu_check_unused_materials(mu_reader *reader) {
         if (name[0] == '$')
             return mu_place_fail(&definition, reader->error, "a name must not begin with '$': paths do");
         if (is_known(reader->scene, name, 0, &index) || is_known(reader->scene, name, 1, &index)) continue;
-        if (!mu_material_read(&material, reader->scene->plugins, &definition, reader->error)) return 0;
+        if (!mu_material_read_to_render(&material, reader->scene->plugins, &definition, 0, reader->error)) return 0;
         mu_material_free(&material);
     }
     return 1;

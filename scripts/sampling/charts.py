@@ -9,7 +9,8 @@ import numpy as np  # noqa: E402
 
 from . import equation2, masking, noise  # noqa: E402
 
-INK = {"ndf": "#8c8c8c", "mixed": "#c44e52", "visible": "#1f77b4", "visible_uniform": "#55a868", "folded": "#dd8452", "folded_uniform": "#937860", "auto": "#8172b3"}
+INK = {"ndf": "#8c8c8c", "mixed": "#c44e52", "visible": "#1f77b4", "visible_uniform": "#55a868", "folded": "#dd8452", "folded_uniform": "#937860", "auto": "#8172b3",
+       "mixed, 4 candidates": "#e8a5a7", "as rendered": "#222222"}
 
 
 def save(figure, path):
@@ -60,21 +61,23 @@ def equation_2(away, path):
 
 
 def figure_10(settings, path):
+    """The paper's setting above, BSDF sampling alone below."""
     figure, axes = plt.subplots(2, len(noise.GAMMAS), figsize=(15, 7), squeeze=False, sharey="row")
-    for row, (mode, name) in enumerate((("bsdf", "BSDF sampling alone"), ("mis", "with light sampling, as rendered"))):
+    for row, (mode, name) in enumerate((("mis", "with light sampling"), ("bsdf", "BSDF sampling alone"))):
         for column, gamma in enumerate(noise.GAMMAS):
             axis = axes[row, column]
             found = [x for x in settings if x["mode"] == mode and x["gamma"] == gamma]
-            for k, sampler in enumerate(noise.SAMPLERS):
+            names = noise.MODES[mode]
+            for k, sampler in enumerate(names):
                 heights = [x["samplers"][sampler]["samples"][0] for x in found]
-                axis.bar(np.arange(len(found)) + 0.16 * (k - 2), heights, 0.15, color=INK[sampler], label=sampler)
+                axis.bar(np.arange(len(found)) + 0.11 * (k - len(names) / 2), heights, 0.1, color=INK[sampler], label=sampler)
             axis.axhline(1, color="#888", linewidth=0.8)
             axis.set_xticks(range(len(found)), [f"s = {x['s']:g}" for x in found])
             axis.set_title(f"γ = {gamma:g}, {name}", fontsize=10)
             axis.set_yscale("log")
         axes[row, 0].set_ylabel("samples for the same noise, over mixed", fontsize=8)
     figure.subplots_adjust(hspace=0.35)
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncols=len(noise.SAMPLERS), fontsize=9)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncols=len(noise.MODES["mis"]), fontsize=9)
     return save(figure, path)
 
 

@@ -19,14 +19,14 @@ class RenderError(Exception):
     pass
 
 
-def scene(mesh, size, material, light_sampling=True):
+def scene(mesh, size, material, light_sampling=True, candidates=4):
     """The knot, lit by one rectangle from above and aside, seen from above the front. Two bounces: what one limb reflects of
     another is part of the noise."""
     return {
         "musurf": 1,
         "camera": {"position": [0.3, -3.4, 4.4], "target": [0, 0, 0], "fov": 33},
         "film": {"width": size[0], "height": size[1], "filter": "box", "pixels": "float"},
-        "integrator": {"depth": 2, "roulette": 2, "light_sampling": light_sampling},
+        "integrator": {"depth": 2, "roulette": 2, "light_sampling": light_sampling, "light_candidates": candidates},
         "meshes": {"knot": {"file": str(mesh)}},
         "materials": {"knot": material},
         "objects": [{"mesh": "knot", "material": "knot"}],
@@ -37,7 +37,17 @@ def scene(mesh, size, material, light_sampling=True):
 
 
 def material(gamma, s, sampler, alpha=0.3):
-    return {"material": "musurf.microfacet", "ndf": "gtr", "alpha": alpha, "gamma": gamma, "stretch": s, "sampler": sampler}
+    """sampler None: the renderer's own choice."""
+    out = {"material": "musurf.microfacet", "ndf": "gtr", "alpha": alpha, "gamma": gamma, "stretch": s}
+    return {**out, "sampler": sampler} if sampler else out
+
+
+def chosen(musurf, description, folder):
+    """The sampler that the renderer chooses for the only material."""
+    file = folder / "scene.json"
+    file.write_text(json.dumps(description))
+    done = subprocess.run([str(musurf), "render", str(file), "--explain"], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["materials"][0]["sampler"].split(":")[0]
 
 
 def render(musurf, description, folder, spp, seed, threads=None):

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/render/check_jumps.h"
 #include "core/render/check_probability.h"
 #include "core/render/check_quadrature.h"
 
@@ -16,6 +17,7 @@ struct mu_cells {
     double edge[ROWS][ROW_CELLS + 1]; /* in x */
     size_t count[ROWS];
     double probability[ROWS][ROW_CELLS];
+    double doubt[ROWS][ROW_CELLS]; /* estimated error of the probability */
     double seen[ROWS][ROW_CELLS];
     double outside, samples, total, error;
 };
@@ -58,6 +60,25 @@ static void cut(double edge[], size_t count, const double sum[STEPS + 1]) {
 
 /* Placed so that a mutually wrong density and quantile cannot agree: the probability is integrated over the
  * cell. */
+static double narrowest_of(const mu_cells *cells, size_t row) {
+    double width = 1;
+    for (size_t c = 0; c < cells->count[row]; c++) width = fmin(width, cells->edge[row][c + 1] - cells->edge[row][c]);
+    return fmax(width, 1. / STEPS);
+}
+
+static void integrate_jumpy_cells(mu_cells *cells, density_context *d) {
+    double squares = 0;
+    for (size_t row = 0; row < ROWS; row++)
+        for (size_t c = 0; c < cells->count[row]; c++) {
+            const double y[2] = {2. * (double)row / ROWS, 2. * (double)(row + 1) / ROWS};
+            double *p = &cells->probability[row][c], *doubt = &cells->doubt[row][c];
+            mu_integrate_jumps(density_at, d, &cells->edge[row][c], y, narrowest_of(cells, row), p, doubt);
+            cells->total += *p;
+            if (*doubt > 0) squares += *doubt * *doubt / (*p + *doubt);
+        }
+    cells->error = sqrt(squares);
+}
+
 static void integrate_cells(mu_cells *cells, density_context *d, double mean, size_t pieces) {
     const mu_quadrature q = {.integrand = density_at,
                              .context = d,
@@ -74,7 +95,8 @@ static void integrate_cells(mu_cells *cells, density_context *d, double mean, si
             const mu_integral cell = mu_integrate(&q, x, columns, y, pieces);
             cells->probability[row][c] = cell.value[0];
             cells->total += cell.value[0];
-            cells->error = fmax(cells->error, cell.panels ? cell.error[0] / mean : INFINITY);
+            cells->doubt[row][c] = cell.panels ? cell.error[0] : INFINITY;
+            cells->error = fmax(cells->error, cells->doubt[row][c] / mean);
         }
 }
 
@@ -93,7 +115,10 @@ mu_cells *mu_cells_make(const mu_region *region, mu_slope_density density, void 
                 cells->count[row] = share < 1 ? 1 : share > ROW_CELLS ? ROW_CELLS : (size_t)(share + .5);
                 cut(cells->edge[row], cells->count[row], sums[row]);
             }
-            integrate_cells(cells, &d, total / (double)wanted, pieces);
+            if (pieces)
+                integrate_cells(cells, &d, total / (double)wanted, pieces);
+            else
+                integrate_jumpy_cells(cells, &d);
         }
     }
     free(sums);
@@ -132,7 +157,7 @@ void mu_cells_add(mu_cells *cells, const double m[3]) {
 }
 
 typedef struct bin {
-    double expected, seen;
+    double expected, seen, doubt;
 } bin;
 
 static int by_expected(const void *a, const void *b) {
@@ -143,22 +168,27 @@ static int by_expected(const void *a, const void *b) {
 double mu_cells_p(const mu_cells *cells) {
     bin bins[ROWS * ROW_CELLS + 1];
     size_t count = 0;
-    bins[count++] = (bin){fmax(0, 1 - cells->total) * cells->samples, cells->outside};
+    bins[count++] = (bin){fmax(0, 1 - cells->total) * cells->samples, cells->outside, 0};
     for (size_t row = 0; row < ROWS; row++)
         for (size_t c = 0; c < cells->count[row]; c++)
-            bins[count++] = (bin){cells->probability[row][c] * cells->samples, cells->seen[row][c]};
+            bins[count++] = (bin){cells->probability[row][c] * cells->samples, cells->seen[row][c], cells->doubt[row][c] * cells->samples};
     qsort(bins, count, sizeof *bins, by_expected);
-    double statistic = 0, freedom = -1;
-    bin pool = {0, 0};
+    double statistic = 0, doubt = 0, freedom = -1;
+    bin pool = {0, 0, 0};
     for (size_t i = 0; i < count; i++) {
         pool.expected += bins[i].expected;
         pool.seen += bins[i].seen;
+        pool.doubt += bins[i].doubt;
         const _Bool last = i + 1 == count;
         if (pool.expected < 5 && !last) continue;
         if (!(pool.expected > 0)) return pool.seen > 0 ? 0 : 1;
         statistic += (pool.seen - pool.expected) * (pool.seen - pool.expected) / pool.expected;
+        doubt += pool.doubt * pool.doubt / pool.expected;
         freedom++;
-        pool = (bin){0, 0};
+        pool = (bin){0, 0, 0};
     }
-    return freedom > 0 ? mu_chi2_p(statistic, freedom) : 1;
+    /* The statistic is a squared distance from the expected counts; if these are off by the doubt, it is off by no more than
+     * that distance (triangle inequality). */
+    const double distance = fmax(0, sqrt(statistic) - sqrt(doubt));
+    return freedom > 0 ? mu_chi2_p(distance * distance, freedom) : 1;
 }

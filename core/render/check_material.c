@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/render/material_settings.h"
+#include "core/render/plugin.h"
 
 /* What the parameters of these names say; another type's materials may have none of them. */
 static mu_form form_of(const json_t *material) {
@@ -21,6 +22,15 @@ static mu_form form_of(const json_t *material) {
 static _Bool scatters_once(const json_t *material) {
     const json_t *multiple = json_object_get(material, "multiple_scattering");
     return !json_is_string(multiple) || !strcmp(json_string_value(multiple), "none");
+}
+
+/* Is there a table among its parameters, whose cells meet in jumps? */
+static _Bool has_grid(const musurf_material_type *type, const json_t *material) {
+    for (uint32_t i = 0; i < type->param_count; i++) {
+        const musurf_param *p = mu_type_param(type, i);
+        if (p->kind == MUSURF_GRID && json_object_get(material, p->name)) return 1;
+    }
+    return 0;
 }
 
 static double eta_of(const mu_material *material, const json_t *json) {
@@ -53,6 +63,7 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
                                 .precision = precision,
                                 .json = out->json,
                                 .form = form_of(place->value),
+                                .jumps = has_grid(type, place->value),
                                 .eta = eta_of(&out->material, place->value)};
     const double up[3] = {0, 0, 1};
     musurf_probe_values values;

@@ -25,6 +25,7 @@ typedef struct mu_plane {
     double area;          /* |det A| */
     double condition;     /* of A: largest over smallest singular value */
     double narrowest;     /* the smallest singular value of A: width of the lobe in slopes */
+    double lost;          /* share of the projected area that may lie beyond the ends of regions */
     double spread; /* the logarithm of the largest radius at which the distribution changes its shape; >= 0 */
 } mu_plane;
 

@@ -26,7 +26,9 @@ typedef struct density_of {
  * (check_shading.c). */
 static density_of density_make(const mu_subject *subject, const double view[3], int quantity) {
     density_of density = {*subject, view, quantity};
-    if (subject->type && subject->plane.condition * 0x1p-24 < 1e-5) density.subject.precision = MUSURF_FLOAT;
+    const _Bool reaches = subject->plane.spread < 30; /* out to e^60, which floats hold */
+    if (subject->type && subject->plane.condition * 0x1p-24 < 1e-5 && reaches)
+        density.subject.precision = MUSURF_FLOAT;
     return density;
 }
 
@@ -71,7 +73,7 @@ static mu_cells *lobe_cells(const mu_subject *subject, const mu_check_effort *ef
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3) return NULL;
     return mu_cells_make(&region, refracted ? refracted_density : reflected_density, density,
                          density->subject.precision == MUSURF_FLOAT ? effort->cells / 2 : effort->cells / 4,
-                         refracted ? 4 : 1);
+                         subject->jumps ? 0 : refracted ? 4 : 1);
 }
 
 static lobes lobes_make(const mu_subject *subject, const mu_check_effort *effort, const double view[3]) {
@@ -145,7 +147,8 @@ static void draw_shading(const mu_subject *subject, const mu_check_effort *effor
     const _Bool chosen = subject->eta > 0 || subject->sampler == MUSURF_SAMPLE_AS_SET;
     mu_cells *cells = subject->eta == 1 ? NULL
                       : chosen          ? lobe_cells(subject, effort, view, 0, density)
-                                        : mu_cells_make(&region, slope_density, density, effort->cells, 1);
+                                        : mu_cells_make(&region, slope_density, density, effort->cells,
+                                                        subject->jumps ? 0 : 1);
     void *closure = aligned_alloc(64, ((size_t)plan.closure_bytes + 64) / 64 * 64);
     if (!cells || !closure || mu_cells_error(cells) > 0.05) {
         mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
@@ -201,7 +204,8 @@ void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, 
         mu_region_make(&subject->plane, visible ? MU_VISIBLE_SLOPES : MU_WHOLE_PLANE, view);
     /* D does not depend on the view: at the normal, masking costs nothing. */
     density_of density = visible ? density_make(subject, view, MU_AT_DV) : density_make(subject, up, MU_AT_D);
-    mu_cells *cells = mixed ? NULL : mu_cells_make(&region, slope_density, &density, effort->cells, 1);
+    mu_cells *cells =
+        mixed ? NULL : mu_cells_make(&region, slope_density, &density, effort->cells, subject->jumps ? 0 : 1);
     /* Rounding must not carry samples across cells: these are some 1/20 wide. */
     const _Bool sharp = subject->plane.condition * mu_subject_epsilon(subject) < 1e-3;
     const _Bool resolved = cells && sharp && mu_cells_error(cells) < 0.05;

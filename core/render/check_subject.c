@@ -158,6 +158,39 @@ _Bool mu_subject_find_sampler(mu_subject *subject) {
     return 1;
 }
 
+/* P22(s) |s|³ at radius e^t: what a grazing view sees per dt and turn of the slope plane. */
+static double seen_at(const mu_subject *subject, double t, double psi) {
+    const mu_plane *plane = &subject->plane;
+    const double *a = plane->to_slope, r = exp(t), s[2] = {r * cos(psi), r * sin(psi)};
+    const double p[2] = {plane->centre[0] + a[0] * s[0] + a[1] * s[1], plane->centre[1] + a[2] * s[0] + a[3] * s[1]};
+    const double z = 1 / sqrt(1 + p[0] * p[0] + p[1] * p[1]), up[3] = {0, 0, 1}, m[3] = {-p[0] * z, -p[1] * z, z};
+    const double d = mu_subject_ask(subject, up, m, NULL).value[MU_AT_D];
+    return d * z * r * (z * r) * (z * r) * z; /* P22 = D z^4 */
+}
+
+/*
+ * How far out regions have to reach, from the tail itself: samples do not tell, where s^(3 - 2 gamma) of the projected area
+ * lies beyond slope s, as for std. Beyond t the rest is about w(t) / -(log w)'; e^-32 of what lies before is as good as
+ * nothing. Slopes end where normals, or D, leave the numbers of the arithmetic: 2^-100 or 2^-330 (whose cube is one).
+ */
+static void find_spread(mu_subject *subject) {
+    mu_plane *plane = &subject->plane;
+    const double widest = log(fmax(1, plane->narrowest * plane->condition)),
+                 end = (subject->precision == MUSURF_FLOAT ? 69 : 229) - widest;
+    double before = 0, last = 0, far = 0;
+    plane->lost = 0;
+    for (double t = -16; t < end; t += 0.5) {
+        double w = 0;
+        for (int i = 0; i < 16; i++) w = fmax(w, seen_at(subject, t, 0.39269908169872414 * (i + .5)));
+        before += w / 2;
+        if (w > 0) far = t;
+        plane->lost = w > 0 && w < last && before > 0 ? w / (2 * log(last / w)) / before : w > 0 ? 1 : 0;
+        last = w;
+        if (t > 0 && plane->lost > 0 && plane->lost < 0x1p-46) break;
+    }
+    plane->spread = fmax(0, far - 30);
+}
+
 _Bool mu_subject_find_plane(mu_subject *subject) {
     enum { COUNT = 2048 };
     mu_stream random = mu_stream_make(0x706c616e65u, 0);
@@ -173,5 +206,7 @@ _Bool mu_subject_find_plane(mu_subject *subject) {
         slopes[2 * count] = -s.wm[0] / s.wm[2];
         slopes[2 * count++ + 1] = -s.wm[1] / s.wm[2];
     }
-    return count > COUNT / 2 && mu_plane_from_slopes(&subject->plane, slopes, count, scratch);
+    if (!(count > COUNT / 2 && mu_plane_from_slopes(&subject->plane, slopes, count, scratch))) return 0;
+    find_spread(subject);
+    return 1;
 }

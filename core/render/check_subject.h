@@ -21,6 +21,7 @@ typedef struct mu_subject {
     musurf_sampler sampler; /* what the material's own pdf belongs to; AS_SET: a mixture */
     const char *json;       /* the material's definition on one line, for `musurf eval` */
     mu_form form;
+    _Bool jumps; /* D is made of cells */
     double eta; /* n_i/n_o of what it transmits, seen from the side under test; 0: it is opaque */
     _Bool
         below; /* tested from below: every direction is turned over on its way in and out, and all laws stay */

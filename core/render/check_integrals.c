@@ -90,6 +90,23 @@ static void refracted_at(void *context, double x, double y, double value[MU_PART
     value[2] = pdf > 0 ? weighted * weighted / pdf * dwi : 0;
 }
 
+/* What a smooth lobe sends through, by the normals that would reflect its mirror image in the surface: all directions have one. */
+static void sent_through_at(void *context, double x, double y, double value[MU_PARTS]) {
+    integral_context *c = context;
+    double m[3], wi[3];
+    const double area = mu_region_point(c->region, x, y, m), cosine = m[2], eta = c->subject->eta;
+    const double facing = dot(c->view, m);
+    for (int i = 0; i < 3; i++) wi[i] = 2 * facing * m[i] - c->view[i];
+    wi[2] = -wi[2];
+    if (!(area > 0 && cosine > 0 && facing > 0 && wi[2] < 0)) return;
+    const mu_answer a = ask(c, NULL, wi);
+    const double dwi = 4 * facing * cosine * cosine * cosine * area;
+    const double pdf = a.value[MU_AT_PDF], weighted = -a.value[MU_AT_F] * wi[2] * eta * eta;
+    value[0] = pdf * dwi;
+    value[1] = weighted * dwi;
+    value[2] = pdf > 0 ? weighted * weighted / pdf * dwi : 0;
+}
+
 static double noise(const mu_subject *subject) {
     return 16 * mu_subject_epsilon(subject) * subject->plane.condition;
 }
@@ -206,13 +223,17 @@ mu_reflected mu_check_scattered(const mu_subject *subject, const mu_check_effort
         /* Where light leaves the denser side the integrand has an edge within the region: coarser, and sooner given up */
         mu_check_effort less = *effort;
         less.target = 1e-4, less.panels = effort->panels / 4;
-        const mu_reflected through = scattered(subject, &less, view, MU_VISIBLE_SLOPES, refracted_at, tally);
+        const _Bool lobe = subject->bounces == MU_SMOOTH_LOBE;
+        const mu_reflected through = scattered(subject, &less, view, lobe ? MU_REFLECTING_SLOPES : MU_VISIBLE_SLOPES,
+                                               lobe ? sent_through_at : refracted_at, tally);
         out.pdf += through.pdf, out.albedo += through.albedo, out.square += through.square;
         out.error += through.error;
         out.resolved = through.resolved;
     }
+    /* tables of what is lost interpolate: within 1 % of what there is, or 5 % where total reflection makes edges */
+    const double tables = subject->bounces == MU_ONCE ? 0 : subject->eta > 0 ? .05 : .01;
     if (out.resolved)
-        mu_tally_error(tally, MU_LAW_FURNACE, fmax(0, out.albedo - 1), out.error, at);
+        mu_tally_error(tally, MU_LAW_FURNACE, fmax(0, out.albedo - 1), out.error + tables, at);
     else
         mu_tally_unresolved(tally, MU_LAW_FURNACE, at);
     return out;

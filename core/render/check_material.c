@@ -18,10 +18,10 @@ static mu_form form_of(const json_t *material) {
                                                    : MU_FORM_HEIGHT;
 }
 
-/* Light that meets several facets obeys none of the laws of one. */
-static _Bool scatters_once(const json_t *material) {
+static mu_bounces bounces_of(const json_t *material) {
     const json_t *multiple = json_object_get(material, "multiple_scattering");
-    return !json_is_string(multiple) || !strcmp(json_string_value(multiple), "none");
+    const char *name = json_is_string(multiple) ? json_string_value(multiple) : "none";
+    return !strcmp(name, "none") ? MU_ONCE : !strcmp(name, "random_walk") ? MU_WALKS : MU_SMOOTH_LOBE;
 }
 
 /* Is there a table among its parameters, whose cells meet in jumps? */
@@ -49,10 +49,6 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
     if (out->material.one_footprint)
         return mu_place_fail(place, error,
                              "shows the flakes of one footprint: its D is not a density. Leave it out");
-    if (!scatters_once(place->value))
-        return mu_place_fail(place, error,
-                             "scatters several times: the laws are those of single scattering. Leave "
-                             "multiple_scattering out");
     if (out->material.jacobian.map != MU_JACOBIAN_NONE || slots)
         return mu_place_fail(place, error, "varies over the surface");
     if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample)
@@ -63,6 +59,7 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
                                 .precision = precision,
                                 .json = out->json,
                                 .form = form_of(place->value),
+                                .bounces = bounces_of(place->value),
                                 .jumps = has_grid(type, place->value),
                                 .eta = eta_of(&out->material, place->value)};
     const double up[3] = {0, 0, 1};
@@ -73,6 +70,9 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
     if (values.delta) return mu_place_fail(place, error, "is a mirror and has no density");
     if (!mu_subject_find_sampler(&out->subject))
         return mu_place_fail(place, error, "the probe of %s does not sample", type->id);
+    if (out->subject.bounces != MU_ONCE) out->subject.sampler = MUSURF_SAMPLE_AS_SET;
+    if (out->subject.bounces == MU_SMOOTH_LOBE && out->subject.eta > 0)
+        out->subject.jumps = 1; /* drawn by the cells of a table, on a side where facets may send nothing */
     return 1;
 }
 

@@ -34,12 +34,17 @@ static void check_side(const run *r, uint64_t index, const mu_subject *subject, 
         mu_draw_view(index, r->settings->views < MU_VIEWS ? (int)((index + (uint64_t)k) % MU_VIEWS) : k,
                      &random, view);
         mu_check_visible(subject, effort, view, tally);
+        if (subject->bounces == MU_WALKS) {
+            mu_check_walk(subject, effort, view, &random, tally);
+            continue;
+        }
         const mu_reflected scattered = mu_check_scattered(subject, effort, view, tally);
         static const double up[3] = {0, 0, 1};
-        if (subject->sampler == MUSURF_SAMPLE_NDF || k == 0)
+        const _Bool normals = subject->bounces == MU_ONCE; /* else samplers are not of normals alone */
+        if (normals && (subject->sampler == MUSURF_SAMPLE_NDF || k == 0))
             mu_check_sampler(subject, effort, MUSURF_SAMPLE_NDF,
                              subject->sampler == MUSURF_SAMPLE_NDF ? view : up, &scattered, &random, tally);
-        mu_check_sampler(subject, effort, MUSURF_SAMPLE_VISIBLE, view, &scattered, &random, tally);
+        if (normals) mu_check_sampler(subject, effort, MUSURF_SAMPLE_VISIBLE, view, &scattered, &random, tally);
         if (subject->sampler == MUSURF_SAMPLE_AS_SET)
             mu_check_sampler(subject, effort, MUSURF_SAMPLE_AS_SET, view, &scattered, &random, tally);
         mu_check_points(subject, effort, view, &random, tally);

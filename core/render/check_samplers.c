@@ -57,6 +57,22 @@ static double refracted_density(void *context, const double m[3]) {
     return mu_subject_ask(&d->subject, d->view, NULL, wi).value[MU_AT_PDF] * spread * m[2] * m[2] * m[2];
 }
 
+/* The pdf of eval below the surface, at what normal m would reflect the view into were it mirrored in the surface. */
+static double through_density(void *context, const double m[3]) {
+    const density_of *d = context;
+    const double *v = d->view, facing = v[0] * m[0] + v[1] * m[1] + v[2] * m[2];
+    const double wi[3] = {2 * facing * m[0] - v[0], 2 * facing * m[1] - v[1], v[2] - 2 * facing * m[2]};
+    if (!(facing > 0 && wi[2] < 0)) return 0;
+    return mu_subject_ask(&d->subject, v, NULL, wi).value[MU_AT_PDF] * 4 * facing * m[2] * m[2] * m[2];
+}
+
+/* The normal that makes wi, or its mirror image in the surface, of the view. */
+static void half_way(const double view[3], const double wi[3], double m[3]) {
+    const double h[3] = {view[0] + wi[0], view[1] + wi[1], view[2] + fabs(wi[2])};
+    const double length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+    for (int c = 0; c < 3; c++) m[c] = h[c] / length;
+}
+
 /* The material's own directions, by lobe; either may be NULL. */
 typedef struct lobes {
     mu_cells *reflected, *refracted;
@@ -65,13 +81,17 @@ typedef struct lobes {
 
 static mu_cells *lobe_cells(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
                             _Bool refracted, density_of *density) {
+    const _Bool lobe = subject->bounces == MU_SMOOTH_LOBE, by_normals = refracted && !lobe;
     const mu_region region =
-        mu_region_make(&subject->plane, refracted ? MU_VISIBLE_SLOPES : MU_REFLECTING_SLOPES, view);
+        mu_region_make(&subject->plane, by_normals ? MU_VISIBLE_SLOPES : MU_REFLECTING_SLOPES, view);
     *density = density_make(subject, view, MU_AT_PDF);
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3)
         density->subject.precision = MUSURF_DOUBLE;
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3) return NULL;
-    return mu_cells_make(&region, refracted ? refracted_density : reflected_density, density,
+    return mu_cells_make(&region, by_normals  ? refracted_density
+                                  : refracted ? through_density
+                                              : reflected_density,
+                         density,
                          density->subject.precision == MUSURF_FLOAT ? effort->cells / 2 : effort->cells / 4,
                          subject->jumps ? 0 : refracted ? 4 : 1);
 }
@@ -118,8 +138,10 @@ static outcome draw(const mu_subject *subject, size_t samples, musurf_sampler sa
         musurf_probe_sample s;
         out.ok = mu_subject_sample(subject, sampler, view, u, &s) == MUSURF_OK;
         if (cells) mu_cells_add(cells, s.wm);
-        add_to(own->reflected, s.wm, !s.rejected && s.wi[2] > 0);
-        add_to(own->refracted, s.wm, !s.rejected && s.wi[2] < 0);
+        double m[3] = {s.wm[0], s.wm[1], s.wm[2]};
+        if (subject->bounces == MU_SMOOTH_LOBE && !s.rejected) half_way(view, s.wi, m);
+        add_to(own->reflected, m, !s.rejected && s.wi[2] > 0);
+        add_to(own->refracted, m, !s.rejected && s.wi[2] < 0);
         out.delta += s.delta;
         if (s.rejected) {
             out.rejected++;
@@ -160,8 +182,9 @@ static void draw_shading(const mu_subject *subject, const mu_check_effort *effor
             const float u[3] = {mu_stream_float(random), mu_stream_float(random), mu_stream_float(random)};
             musurf_sample s;
             subject->type->sample(closure, u, MUSURF_ALL_LOBES, &s);
-            const double m[3] = {(double)(side * s.wm[0]), (double)(side * s.wm[1]),
-                                 (double)(side * s.wm[2])};
+            double m[3] = {(double)(side * s.wm[0]), (double)(side * s.wm[1]), (double)(side * s.wm[2])};
+            const double wi[3] = {(double)(side * s.wi[0]), (double)(side * s.wi[1]), (double)(side * s.wi[2])};
+            if (subject->bounces == MU_SMOOTH_LOBE && s.lobe) half_way(view, wi, m);
             add_to(cells, m, s.lobe & MUSURF_GLOSSY_REFLECTION);
         }
         mu_tally_p(tally, MU_LAW_SHADING_SAMPLER, lit ? mu_cells_p(cells) : 0, at);

@@ -26,6 +26,11 @@ static _Bool collect(mu_check_materials *all, mu_plugins *plugins, const mu_plac
         mu_check_material_free(item);
         return 1;
     }
+    if (item->subject.bounces == MU_WALKS)
+        fprintf(stderr,
+                "musurf check: %s: a random walk: f is an estimate and pdf not the density of its samples, which nobody "
+                "knows, so energy and reciprocity are asked on average, and no law of f, weight or pdf at a point\n",
+                item->json);
     all->count++;
     return 1;
 }

@@ -13,6 +13,9 @@
 /* Which of Smith's G2 a material says it has. */
 typedef enum mu_form { MU_FORM_HEIGHT, MU_FORM_SEPARABLE, MU_FORM_DIRECTION } mu_form;
 
+/* Light that meets several facets: lost, made up for by a smooth lobe, or followed (f is an estimate then). */
+typedef enum mu_bounces { MU_ONCE, MU_SMOOTH_LOBE, MU_WALKS } mu_bounces;
+
 typedef struct mu_subject {
     const musurf_material_type *type; /* NULL: no shading calls to test */
     const musurf_material *material;
@@ -21,6 +24,7 @@ typedef struct mu_subject {
     musurf_sampler sampler; /* what the material's own pdf belongs to; AS_SET: a mixture */
     const char *json;       /* the material's definition on one line, for `musurf eval` */
     mu_form form;
+    mu_bounces bounces;
     _Bool jumps; /* D is made of cells */
     double eta; /* n_i/n_o of what it transmits, seen from the side under test; 0: it is opaque */
     _Bool

@@ -39,6 +39,8 @@
     X(SHADOWING_FORM, "G2 by Lambda_o, Lambda_i: its form", E)                                               \
     X(RANGE, "G1, G2 <= 1, G2 <= min G1; finite, >= 0", E)                                                   \
     X(RECIPROCITY, "f(wo,wi) / n_o^2 = f(wi,wo) / n_i^2", E)                                                 \
+    X(WALK_ENERGY, "random walk: mean weight = integral of f cos", P)                                        \
+    X(WALK_RECIPROCITY, "random walk: f(wo,wi) / n_o^2 = f(wi,wo) / n_i^2, mean", P)                         \
     X(SLOPES_COVARIANT, "Eq. (22)  P22_M(p) = |det M| P22(M^T p - tilt)", E)                                 \
     X(MASKING_INVARIANT, "Eq. (12)  G1_M(v) = G1(M^-1 v)", E)                                                \
     X(SHADOWING_INVARIANT, "G2_M(v,l) = G2(M^-1 v, M^-1 l)", E)                                              \

@@ -44,6 +44,10 @@ void mu_check_sampler(const mu_subject *subject, const mu_check_effort *effort, 
                       const double view[3], const mu_reflected *scattered, mu_stream *random,
                       mu_tally *tally);
 
+/* Averages, of materials whose f is an estimate. */
+void mu_check_walk(const mu_subject *subject, const mu_check_effort *effort, const double view[3], mu_stream *random,
+                   mu_tally *tally);
+
 /* Identities between the quantities at sampled directions. */
 void mu_check_points(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
                      mu_stream *random, mu_tally *tally);

@@ -38,7 +38,7 @@ static const mu_usage usage = {
     "check", "[OPTIONS] [SCENE...]",
     "Checks materials numerically: random distributions under random linear maps (also nearly singular, "
     "mirrored\n"
-    "and scaled by 1e-12 to 1e12), and all constant materials of the given scenes that scatter singly.\n"
+    "and scaled by 1e-12 to 1e12), and all constant materials of the given scenes.\n"
     "Normalisation of D, G1 and the visible normals by adaptive quadrature, samplers by chi^2, pdf and "
     "weight\n"
     "against f, reciprocity, the transformation laws, and the float shading calls that renderers use.\n",

@@ -97,7 +97,7 @@ help:
 	@echo 'make test       install what is missing, build, run the test suite (ONLY="words" picks tests by name)'
 	@echo 'make            build everything into $(BUILD)/'
 	@echo 'make bench      speed, as ratios measured in one run'
-	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance'
+	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance; README=1: also there'
 	@echo 'make geometry   mirror facets rendered by POV-Ray beside the material fitted to them; QUICK=1: a glance'
 	@echo 'make costs      what accuracy costs on explicit surfaces: error against time and memory; QUICK=1: a glance'
 	@echo 'make report     all of these and the full cross-check, measured and on one page, with what is claimed on top; QUICK=1'

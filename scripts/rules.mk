@@ -7,7 +7,7 @@ run-demo: all
 efficiency: deps
 	@$(MAKE) --no-print-directory run-efficiency
 run-efficiency: all $(BENCHMARKS)
-	@BUILD=$(BUILD) $(PYTHON) scripts/efficiency -o $(BUILD)/efficiency $(if $(QUICK),--quick)
+	@BUILD=$(BUILD) $(PYTHON) scripts/efficiency -o $(BUILD)/efficiency $(if $(QUICK),--quick) $(if $(README),--readme)
 
 # Explicit mirror facets in POV-Ray beside the fitted material, for four M.
 geometry: deps

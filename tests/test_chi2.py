@@ -21,8 +21,8 @@ SIZE = int(re.search(r"#define FAMILY_SIZE\s+(\S+)", HEADER)[1])
 # Each of the two runs takes 512 of the family's comparisons, whatever number of them it makes itself.
 SHARE = 1 - (1 - LEVEL) ** (512 / SIZE)
 RUNS = {"double": ("--seed", "20220704", "--n", "22"), "float": ("--seed", "20220705", "--n", "44", "--samples", "40000")}
-# A law that no material of the run could test would pass unseen.
-ALL_LAWS = 32
+# A law that no material of the run could test would pass unseen; random ones do not walk (tests/test_check_scene.py has one that does).
+ALL_LAWS = 34
 
 
 def check(*arguments, **env):
@@ -39,6 +39,8 @@ class Statistics(unittest.TestCase):
         self.assertEqual(len(out["laws"]), ALL_LAWS)
         self.assertLessEqual(out["p_values"], 512)
         for law in out["laws"]:
+            if law["law"].startswith("WALK_"):
+                continue
             with self.subTest(law=law["title"]):
                 self.assertEqual(law["verdict"], "ok", json.dumps(law))
                 self.assertGreaterEqual(law["tests"], 16, "hardly tested")  # refraction: a quarter of the materials

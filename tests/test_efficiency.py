@@ -56,6 +56,35 @@ class Rendering(unittest.TestCase):
         for level, gap, inside in found.values():
             self.assertLess(abs(gap), 6 * np.sqrt((level + right[1][inside].mean()) / inside.sum()))
 
+    def test_candidates_lower_noise_and_move_no_mean(self):
+        """A shadow ray of four candidates: less noise than of one (about half here), the mean within 6 standard errors; and
+        numbers that are no squares are refused."""
+        right = rendering.reference(MUSURF, self.mesh, (32, 24), 1, 0.75, 256, self.folder)
+        found = {}
+        for candidates in (1, 4, 9):
+            description = rendering.scene(self.mesh, (32, 24), rendering.material(1, 0.75, "visible"), True, candidates)
+            picture, inside, _, _ = rendering.render(MUSURF, description, self.folder, 16, 7)
+            found[candidates] = noise.errors(picture, *right[:1], inside, right[1])[0]
+            gap = (picture - right[0])[inside].mean()
+            self.assertLess(abs(gap), 6 * np.sqrt((max(found[candidates], 0) + right[1][inside].mean()) / inside.sum()))
+        self.assertLess(found[4], 0.8 * found[1])
+        self.assertLess(found[9], found[1])
+        path = self.folder / "wrong.json"
+        path.write_text(json.dumps(rendering.scene(self.mesh, (8, 6), rendering.material(1, 0, "visible"), True, 5)))
+        done = musurf("render", path, "-o", self.folder / "x.exr")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("light_candidates: is 5; 1, 4, 9 or 16", done.err)
+
+    def test_the_renderer_chooses_as_auto_does(self):
+        """What it chooses without being told is what "auto" is, to the bit; and a sampler that is named stays."""
+        pictures = {}
+        for sampler in (None, "auto", "visible"):
+            description = rendering.scene(self.mesh, (8, 6), rendering.material(0.1, 0, sampler))
+            pictures[sampler] = rendering.render(MUSURF, description, self.folder, 4, 1)[0]
+            self.assertEqual(rendering.chosen(MUSURF, description, self.folder), "visible" if sampler == "visible" else "folded_uniform")
+        self.assertTrue((pictures[None] == pictures["auto"]).all())
+        self.assertFalse((pictures[None] == pictures["visible"]).all())
+
     def test_the_switch_is_a_flag(self):
         scene = rendering.scene(self.mesh, (8, 6), rendering.material(1, 0, "visible"))
         scene["integrator"]["light_sampling"] = 0
@@ -67,6 +96,14 @@ class Rendering(unittest.TestCase):
 
 
 class Arithmetic(unittest.TestCase):
+    def test_standard_error_is_the_jackknife(self):
+        """Of a mean it is the standard deviation over sqrt(n): here of 1, 2, 3, 6 in both settings, 2.160 / 2."""
+        values = np.array([1, 2, 3, 6.0])
+        out = [[(values.sum() - v) / 3, 0] for v in values]
+        settings = [{"mode": "mis", "samplers": {"x": {"left_out": out}}}] * 2
+        self.assertAlmostEqual(noise.standard_error(settings, "mis", "x"), values.std(ddof=1) / 2)
+        self.assertIsNone(noise.standard_error([{"mode": "mis", "samplers": {"x": {"left_out": []}}}], "mis", "x"))
+
     def test_noise_is_the_mean_square_less_the_references_own(self):
         rng = np.random.default_rng(20261201)
         truth = rng.uniform(0.5, 1, (200, 200))

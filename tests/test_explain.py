@@ -176,6 +176,16 @@ class Explain(unittest.TestCase):
             self.assertIn("matrices", alike["left_out"])
         self.assertNotIn("matrices", turned["left_out"])
 
+    def test_the_sampler_and_why(self):
+        def said(**parameters):
+            return self.explain(with_material(**parameters))["materials"][0]["sampler"]
+        self.assertRegex(said(ndf="gtr", gamma=0.1, alpha=0.3), r"^folded_uniform: least noise measured, 0\.\d\d of visible's")
+        self.assertRegex(said(alpha=0.01), "^visible: least noise measured, 1.00 of")  # nothing is lost below the horizon
+        self.assertEqual(said(ndf="gtr", gamma=0.1, sampler="ndf"), "ndf: as set, or by default")
+        self.assertEqual(said(fresnel={"dielectric": 1.5}, transmission=True), "visible: no other serves this material")
+        self.assertEqual(said(alpha=0), "none: a mirror")
+        self.assertEqual(self.explain({})["materials"][0]["sampler"], "")  # a plugin that says nothing
+
     def test_readme_and_info_list_the_same(self):
         listed = json.loads(musurf("info", "--json").out)["features"]
         self.assertEqual(list(listed), LISTED)

@@ -17,6 +17,8 @@ import shutil
 import subprocess
 import sys
 
+import check_scene
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / os.environ.get("BUILD", "build")
 
@@ -61,6 +63,12 @@ def musurf_check(folder):
     return [BUILD / "musurf", "check", "--quick"], {"BUILD": str(BUILD), "MUSURF_PLUGIN_PATH": str(folder)}
 
 
+def scene(folder):
+    path = check_scene.write(folder / "check_scene.json", check_scene.FEW)
+    return ([BUILD / "musurf", "check", "--quick", "--n", "0", "--samples", "5000", path],
+            {"BUILD": str(BUILD), "MUSURF_PLUGIN_PATH": str(folder)})
+
+
 def reference(folder):
     return ([sys.executable, ROOT / "tests/test_reference.py", "--quick"],
             {"BUILD": str(BUILD), "MUSURF_PLUGIN_PATH": str(folder)})
@@ -71,7 +79,7 @@ def contract(folder):
 
 
 # From the fastest to the slowest. A mutant runs on until the first that rejects it; the right core must pass them all.
-CHECKS = {"contract": contract, "reference": reference, "check": musurf_check}
+CHECKS = {"contract": contract, "reference": reference, "scene": scene, "check": musurf_check}
 
 
 def rejects(check, folder):

@@ -73,7 +73,7 @@ static lobe lobe_toward(const closure *c, const real i[3], int transmitted) {
 }
 
 static real mix(real chosen, real pdf, real single) {
-    return smaller(chosen * pdf + (1 - chosen) * single, REAL_MAX);
+    return smaller(MUTANT(16, 0, chosen * pdf) + (1 - chosen) * single, REAL_MAX);
 }
 
 void MU(compensated_eval)(const kernel *full, const closure *c, const real wi[3], value *out) {

@@ -16,6 +16,10 @@
  * - 11: the azimuth of direction-correlated shadowing between v and l, not M^-1 v and M^-1 l
  * - 12: the visible part of a tilted surface's Lambda below 0 not clamped in G2
  * - 13: F left out of the pdf of a surface that transmits
+ * - 14: what is folded back left out of the density of folded sampling
+ * - 15: the cells of a table drawn alike in every row
+ * - 16: the smooth lobe of compensation left out of its pdf
+ * - 17: a random walk's first facet counted twice
  */
 #ifndef MU_MUTANT_H
 #define MU_MUTANT_H

@@ -54,7 +54,7 @@ void MU(walk_eval)(const kernel *full, const closure *c, const real wi[3], value
     real more[3];
     const real once = transmitted ? 0 : cliff_masking(full, c, i),
                radiance = closure_transport(c, transmitted);
-    MU(walk_estimate)(full, c, multiple_of(c->surface), wi, transmitted ? 1 : 2, WALK_BOUNCES, more);
+    MU(walk_estimate)(full, c, multiple_of(c->surface), wi, transmitted ? 1 : MUTANT(17, 1, 2), WALK_BOUNCES, more);
     for (int k = 0; k < 3; k++) out->f[k] = smaller(out->f[k] * once + more[k] * radiance, REAL_MAX);
     mix_pdf(c, i[2], &out->pdf, &out->pdf_reverse);
 }

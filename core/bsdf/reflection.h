@@ -31,7 +31,7 @@ static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler s
     }
     const real own = *pdf;
     if (plan == PLAN_FULL && folds(sampler)) {
-        *pdf = smaller(*pdf + folded_density(plan, c, c->wo, i, c->sigma), saturated);
+        *pdf = smaller(*pdf + MUTANT(14, 0, folded_density(plan, c, c->wo, i, c->sigma)), saturated);
         *reverse = smaller(*reverse + folded_density(plan, c, i, c->wo, sigma_i), saturated);
     }
     if (plan == PLAN_FULL && mixes(sampler)) { /* Appendix B: the balance heuristic */

@@ -4,6 +4,7 @@
  * double. Not in the papers. */
 #include "core/bsdf/tabulated.h"
 
+#include "core/bsdf/mutant.h"
 #include "core/bsdf/real.h"
 
 #if MU_REAL_BITS == 53
@@ -29,7 +30,7 @@ tabulated_place mu_tabulated_draw(const tabulated_grid *g, const double *sums, c
     tabulated_place at;
     double x, y;
     at.row = invert(below, g->rows, u1, &y);
-    at.column = invert(sums + at.row * (g->columns + 1), g->columns, u0, &x);
+    at.column = invert(sums + MUTANT(15, 0, at.row) * (g->columns + 1), g->columns, u0, &x);
     at.p[0] = g->origin[0] + ((double)at.column + x) * g->cell[0];
     at.p[1] = g->origin[1] + ((double)at.row + y) * g->cell[1];
     return at;

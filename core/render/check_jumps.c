@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { POINTS = 987, STEP = 610 }; /* of each lattice: neighbours in Fibonacci's sequence */
+enum { POINTS = 2584, STEP = 1597 }; /* of each lattice: neighbours in Fibonacci's sequence */
 
 static void lattice(mu_integrand integrand, void *context, const double x[2], const double y[2], double *value,
                     double *error) {

@@ -9,6 +9,8 @@ import sys
 import tempfile
 import time
 
+from reporting import readme
+
 from . import charts, equation2, furnace, knot, masking, noise, rendering, tables
 
 GOAL = 0.75  # of the samples that mixed needs, on average; checked, never tuned for
@@ -72,16 +74,20 @@ def main(arguments, build):
                                      "fragment.html for scripts/report, and pictures. Exit 0: measured, whatever it says; 1: a step failed.")
     parser.add_argument("--quick", action="store_true", help="small pictures and few samples: to see that it works")
     parser.add_argument("-o", metavar="DIR", dest="output", default=str(build / "efficiency"))
+    parser.add_argument("--readme", action="store_true", help="write the averages into README.md, too")
+    parser.add_argument("--from", metavar="FILE", dest="again", help="an efficiency.json, for --readme without measuring again")
     options = parser.parse_args(arguments)
     options.command = " ".join(["scripts/efficiency", *arguments])
     try:
-        result = run(options, build)
+        result = json.loads(pathlib.Path(options.again).read_text()) if options.again else run(options, build)
     except (OSError, rendering.RenderError) as error:
         print(f"efficiency: {error}", file=sys.stderr)
         return 1
     except subprocess.CalledProcessError as error:
         print(f"efficiency: {error.cmd[0]}: exit {error.returncode}: {(error.stderr or '').strip()}", file=sys.stderr)
         return 1
+    if options.readme:
+        readme.write("efficiency", tables.readme(result))
     for line in tables.summary(result):
         print(line)
     print(pathlib.Path(options.output) / "efficiency.json")

@@ -53,6 +53,20 @@ def averages(result):
                   "variance at equal samples"), rows)
 
 
+def readme(result):
+    """Figure 10 as a table: averages over its settings, in units of the paper's mixed sampling, with standard errors."""
+    effort = result["effort"]
+    def said(mode, name):
+        row = result["averages"][mode].get(name)
+        return "" if row is None else f"{row['samples']:.2f}" + (f" ± {row['standard_error']:.2f}" if row["standard_error"] else "")
+    lines = ["Samples per pixel for equal noise, over those of the paper's mixed sampling with one light sample per event, averaged over "
+             "γ 0.1, 1, 4", f"and s 0, 0.25, 0.5, 0.75 (α = 0.3; {effort['size'][0]} × {effort['size'][1]} pixels, "
+             f"{' and '.join(map(str, effort['counts']))} samples, {effort['seeds']} seeds; standard errors by the jackknife):", "",
+             "|  | " + " | ".join(MODES.values()) + " |", "| --- |" + " --- |" * len(MODES)]
+    lines += [f"| {name} | " + " | ".join(said(mode, name) for mode in MODES) + " |" for name in result["averages"]["mis"]]
+    return "\n".join(lines) + "\n"
+
+
 def settings(result):
     names = noise.MODES["mis"]
     rows = [(MODES[x["mode"]], float(x["gamma"]), float(x["s"]), x["chosen"], *(x["samplers"][n]["samples"][0] if n in x["samplers"] else None for n in names))

@@ -24,7 +24,8 @@ typedef struct trial {
 
 static int bind(trial *t, const double wo[3]) {
     const float w[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
-    return t->in_float ? mu_bind_f(t->in_float, w, NULL, &t->closure.f) : mu_bind_d(t->in_double, wo, NULL, &t->closure.d);
+    return t->in_float ? mu_bind_f(t->in_float, w, NULL, &t->closure.f)
+                       : mu_bind_d(t->in_double, wo, NULL, &t->closure.d);
 }
 
 /* The mean of the channels. */
@@ -62,7 +63,8 @@ static double noise_of(trial *t, mu_sampler sampler) {
 }
 
 /* One surface serves all samplers but the bounded one. NAN: not for this definition. */
-static double measure(trial *t, const mu_definition *definition, mu_sampler sampler, int in_float, void *memory) {
+static double measure(trial *t, const mu_definition *definition, mu_sampler sampler, int in_float,
+                      void *memory) {
     mu_definition d = *definition;
     mu_complaint why;
     d.sampler = sampler, d.multiple = MU_SINGLE; /* what is added is smooth whichever draws */
@@ -78,8 +80,8 @@ static double measure(trial *t, const mu_definition *definition, mu_sampler samp
 
 mu_sampler musurf_choose_sampler(const mu_definition *definition, int in_float, void *memory,
                                  double *least_noise) {
-    static const mu_sampler samplers[] = {MU_SAMPLE_FOLDED, MU_SAMPLE_FOLDED_UNIFORM, MU_SAMPLE_VISIBLE_UNIFORM,
-                                          MU_SAMPLE_BOUNDED};
+    static const mu_sampler samplers[] = {MU_SAMPLE_FOLDED, MU_SAMPLE_FOLDED_UNIFORM,
+                                          MU_SAMPLE_VISIBLE_UNIFORM, MU_SAMPLE_BOUNDED};
     mu_sampler best = MU_SAMPLE_VISIBLE; /* of what transmits: the others know reflection alone */
     if (definition->transmission) return best;
     trial t = {0};

@@ -62,7 +62,8 @@ static void cut(double edge[], size_t count, const double sum[STEPS + 1]) {
  * cell. */
 static double narrowest_of(const mu_cells *cells, size_t row) {
     double width = 1;
-    for (size_t c = 0; c < cells->count[row]; c++) width = fmin(width, cells->edge[row][c + 1] - cells->edge[row][c]);
+    for (size_t c = 0; c < cells->count[row]; c++)
+        width = fmin(width, cells->edge[row][c + 1] - cells->edge[row][c]);
     return fmax(width, 1. / STEPS);
 }
 
@@ -171,7 +172,8 @@ double mu_cells_p(const mu_cells *cells) {
     bins[count++] = (bin){fmax(0, 1 - cells->total) * cells->samples, cells->outside, 0};
     for (size_t row = 0; row < ROWS; row++)
         for (size_t c = 0; c < cells->count[row]; c++)
-            bins[count++] = (bin){cells->probability[row][c] * cells->samples, cells->seen[row][c], cells->doubt[row][c] * cells->samples};
+            bins[count++] = (bin){cells->probability[row][c] * cells->samples, cells->seen[row][c],
+                                  cells->doubt[row][c] * cells->samples};
     qsort(bins, count, sizeof *bins, by_expected);
     double statistic = 0, doubt = 0, freedom = -1;
     bin pool = {0, 0, 0};

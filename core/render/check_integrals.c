@@ -224,8 +224,9 @@ mu_reflected mu_check_scattered(const mu_subject *subject, const mu_check_effort
         mu_check_effort less = *effort;
         less.target = 1e-4, less.panels = effort->panels / 4;
         const _Bool lobe = subject->bounces == MU_SMOOTH_LOBE;
-        const mu_reflected through = scattered(subject, &less, view, lobe ? MU_REFLECTING_SLOPES : MU_VISIBLE_SLOPES,
-                                               lobe ? sent_through_at : refracted_at, tally);
+        const mu_reflected through =
+            scattered(subject, &less, view, lobe ? MU_REFLECTING_SLOPES : MU_VISIBLE_SLOPES,
+                      lobe ? sent_through_at : refracted_at, tally);
         out.pdf += through.pdf, out.albedo += through.albedo, out.square += through.square;
         out.error += through.error;
         out.resolved = through.resolved;

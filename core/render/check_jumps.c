@@ -7,8 +7,8 @@
 
 enum { POINTS = 2584, STEP = 1597 }; /* of each lattice: neighbours in Fibonacci's sequence */
 
-static void lattice(mu_integrand integrand, void *context, const double x[2], const double y[2], double *value,
-                    double *error) {
+static void lattice(mu_integrand integrand, void *context, const double x[2], const double y[2],
+                    double *value, double *error) {
     double sum[2] = {0, 0}, low = INFINITY, high = 0;
     for (int i = 0; i < 2 * POINTS; i++) {
         const double u = (i / 2 + (i % 2 ? .75 : .25)) / POINTS,
@@ -23,8 +23,8 @@ static void lattice(mu_integrand integrand, void *context, const double x[2], co
     *error += area * fmax((high - low) * pow(2 * n, -.75), fabs(sum[0] - sum[1]) / (2 * n));
 }
 
-void mu_integrate_jumps(mu_integrand integrand, void *context, const double x[2], const double y[2], double fine,
-                        double *value, double *error) {
+void mu_integrate_jumps(mu_integrand integrand, void *context, const double x[2], const double y[2],
+                        double fine, double *value, double *error) {
     const double middle = (x[0] + x[1]) / 2;
     *value = *error = 0;
     if (x[1] - x[0] <= 2 * fine) {

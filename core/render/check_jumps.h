@@ -16,7 +16,7 @@
 
 /* Part 0 of the integrand over [x0,x1] x [y0,y1]. A rectangle much wider than `fine` (of x) is taken in pieces that double in
  * width from both ends on, since what it has may be a sliver there. */
-void mu_integrate_jumps(mu_integrand integrand, void *context, const double x[2], const double y[2], double fine,
-                        double *value, double *error);
+void mu_integrate_jumps(mu_integrand integrand, void *context, const double x[2], const double y[2],
+                        double fine, double *value, double *error);
 
 #endif

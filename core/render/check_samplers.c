@@ -88,12 +88,15 @@ static mu_cells *lobe_cells(const mu_subject *subject, const mu_check_effort *ef
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3)
         density->subject.precision = MUSURF_DOUBLE;
     if (mu_subject_blur(&density->subject, view, refracted) > 1e-3) return NULL;
-    return mu_cells_make(&region, by_normals  ? refracted_density
-                                  : refracted ? through_density
-                                              : reflected_density,
+    return mu_cells_make(&region,
+                         by_normals  ? refracted_density
+                         : refracted ? through_density
+                                     : reflected_density,
                          density,
                          density->subject.precision == MUSURF_FLOAT ? effort->cells / 2 : effort->cells / 4,
-                         subject->jumps ? 0 : refracted ? 4 : 1);
+                         subject->jumps ? 0
+                         : refracted    ? 4
+                                        : 1);
 }
 
 static lobes lobes_make(const mu_subject *subject, const mu_check_effort *effort, const double view[3]) {
@@ -167,10 +170,10 @@ static void draw_shading(const mu_subject *subject, const mu_check_effort *effor
     musurf_plan plan = {.size = sizeof plan};
     subject->type->describe(subject->material, &plan);
     const _Bool chosen = subject->eta > 0 || subject->sampler == MUSURF_SAMPLE_AS_SET;
-    mu_cells *cells = subject->eta == 1 ? NULL
-                      : chosen          ? lobe_cells(subject, effort, view, 0, density)
-                                        : mu_cells_make(&region, slope_density, density, effort->cells,
-                                                        subject->jumps ? 0 : 1);
+    mu_cells *cells =
+        subject->eta == 1 ? NULL
+        : chosen          ? lobe_cells(subject, effort, view, 0, density)
+                 : mu_cells_make(&region, slope_density, density, effort->cells, subject->jumps ? 0 : 1);
     void *closure = aligned_alloc(64, ((size_t)plan.closure_bytes + 64) / 64 * 64);
     if (!cells || !closure || mu_cells_error(cells) > 0.05) {
         mu_tally_unresolved(tally, MU_LAW_SHADING_SAMPLER, at);
@@ -183,7 +186,8 @@ static void draw_shading(const mu_subject *subject, const mu_check_effort *effor
             musurf_sample s;
             subject->type->sample(closure, u, MUSURF_ALL_LOBES, &s);
             double m[3] = {(double)(side * s.wm[0]), (double)(side * s.wm[1]), (double)(side * s.wm[2])};
-            const double wi[3] = {(double)(side * s.wi[0]), (double)(side * s.wi[1]), (double)(side * s.wi[2])};
+            const double wi[3] = {(double)(side * s.wi[0]), (double)(side * s.wi[1]),
+                                  (double)(side * s.wi[2])};
             if (subject->bounces == MU_SMOOTH_LOBE && s.lobe) half_way(view, wi, m);
             add_to(cells, m, s.lobe & MUSURF_GLOSSY_REFLECTION);
         }

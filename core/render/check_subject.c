@@ -162,8 +162,10 @@ _Bool mu_subject_find_sampler(mu_subject *subject) {
 static double seen_at(const mu_subject *subject, double t, double psi) {
     const mu_plane *plane = &subject->plane;
     const double *a = plane->to_slope, r = exp(t), s[2] = {r * cos(psi), r * sin(psi)};
-    const double p[2] = {plane->centre[0] + a[0] * s[0] + a[1] * s[1], plane->centre[1] + a[2] * s[0] + a[3] * s[1]};
-    const double z = 1 / sqrt(1 + p[0] * p[0] + p[1] * p[1]), up[3] = {0, 0, 1}, m[3] = {-p[0] * z, -p[1] * z, z};
+    const double p[2] = {plane->centre[0] + a[0] * s[0] + a[1] * s[1],
+                         plane->centre[1] + a[2] * s[0] + a[3] * s[1]};
+    const double z = 1 / sqrt(1 + p[0] * p[0] + p[1] * p[1]), up[3] = {0, 0, 1},
+                 m[3] = {-p[0] * z, -p[1] * z, z};
     const double d = mu_subject_ask(subject, up, m, NULL).value[MU_AT_D];
     return d * z * r * (z * r) * (z * r) * z; /* P22 = D z^4 */
 }

@@ -27,10 +27,12 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static _Bool walk(const mu_subject *subject, const double view[3], mu_stream *random, musurf_probe_sample *s) {
+static _Bool walk(const mu_subject *subject, const double view[3], mu_stream *random,
+                  musurf_probe_sample *s) {
     double u[3];
     for (int c = 0; c < 3; c++)
-        u[c] = subject->precision == MUSURF_FLOAT ? (double)mu_stream_float(random) : mu_stream_uniform(random);
+        u[c] =
+            subject->precision == MUSURF_FLOAT ? (double)mu_stream_float(random) : mu_stream_uniform(random);
     return mu_subject_sample(subject, MUSURF_SAMPLE_AS_SET, view, u, s) == MUSURF_OK;
 }
 
@@ -41,7 +43,8 @@ static double density(const mu_subject *subject, const double view[3], const dou
     const double cosine = fabs(wi[2]) / 3.14159265358979323846 / (subject->eta > 0 ? 2 : 1);
     for (int c = 0; c < 3; c++) h[c] = view[c] + wi[c];
     if (through) {
-        if (!mu_refraction_normal(subject->eta, view, wi, h) || !mu_refracted(subject->eta, view, h, back, &spread))
+        if (!mu_refraction_normal(subject->eta, view, wi, h) ||
+            !mu_refracted(subject->eta, view, h, back, &spread))
             return cosine / 2;
     } else {
         const double length = sqrt(dot(h, h));
@@ -121,12 +124,13 @@ static double variance(const moments *m, int k) {
     return fmax(0, m->square[k] / BATCHES - mean * mean) / (BATCHES - 1);
 }
 
-void mu_check_walk(const mu_subject *subject, const mu_check_effort *effort, const double view[3], mu_stream *random,
-                   mu_tally *tally) {
+void mu_check_walk(const mu_subject *subject, const mu_check_effort *effort, const double view[3],
+                   mu_stream *random, mu_tally *tally) {
     const mu_case at = {subject, view, NULL, NULL};
     const size_t samples = effort->samples / BATCHES + 1;
     if (subject->eta == 1 || mu_subject_blur(subject, view, subject->eta > 0) > 1e-3) {
-        mu_tally_unresolved(tally, MU_LAW_WALK_ENERGY, at); /* straight through, or density() is rounding alone */
+        mu_tally_unresolved(tally, MU_LAW_WALK_ENERGY,
+                            at); /* straight through, or density() is rounding alone */
         mu_tally_unresolved(tally, MU_LAW_WALK_RECIPROCITY, at);
         return;
     }
@@ -136,8 +140,18 @@ void mu_check_walk(const mu_subject *subject, const mu_check_effort *effort, con
     for (int k = WEIGHTS; k <= RAISED; k++) { /* no fewer degrees than those of one side alone (Welch) */
         const double error = sqrt(variance(&walks, k) + variance(&values, k));
         const double gap = fabs(walks.sum[k] - values.sum[k]) / BATCHES;
-        mu_tally_p(tally, MU_LAW_WALK_ENERGY, student_p(error > 0 ? gap / error : gap > 0 ? INFINITY : 0, BATCHES - 1), at);
+        mu_tally_p(tally, MU_LAW_WALK_ENERGY,
+                   student_p(error > 0 ? gap / error
+                             : gap > 0 ? INFINITY
+                                       : 0,
+                             BATCHES - 1),
+                   at);
     }
     const double error = sqrt(variance(&values, ASYMMETRY)), gap = fabs(values.sum[ASYMMETRY]) / BATCHES;
-    mu_tally_p(tally, MU_LAW_WALK_RECIPROCITY, student_p(error > 0 ? gap / error : gap > 0 ? INFINITY : 0, BATCHES - 1), at);
+    mu_tally_p(tally, MU_LAW_WALK_RECIPROCITY,
+               student_p(error > 0 ? gap / error
+                         : gap > 0 ? INFINITY
+                                   : 0,
+                         BATCHES - 1),
+               at);
 }

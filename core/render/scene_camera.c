@@ -81,7 +81,8 @@ _Bool mu_read_integrator(mu_reader *reader) {
     mu_integrator_settings *integrator = &reader->scene->integrator;
     mu_error *error = reader->error;
     const mu_place place = mu_place_member(&reader->root, "integrator");
-    *integrator = (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .seed = 0};
+    *integrator =
+        (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .seed = 0};
     if (!place.value) return 1;
     if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
         !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||
@@ -95,7 +96,8 @@ _Bool mu_read_integrator(mu_reader *reader) {
     integrator->bsdf_only = !sampled;
     uint32_t candidates = integrator->light_cells * integrator->light_cells;
     const mu_place of_light = mu_place_member(&place, "light_candidates");
-    if (!mu_read_count(&place, "light_candidates", 1, MU_LIGHT_CELLS * MU_LIGHT_CELLS, &candidates, error)) return 0;
+    if (!mu_read_count(&place, "light_candidates", 1, MU_LIGHT_CELLS * MU_LIGHT_CELLS, &candidates, error))
+        return 0;
     integrator->light_cells = (uint32_t)lround(sqrt((double)candidates));
     if (integrator->light_cells * integrator->light_cells != candidates)
         return mu_place_fail(&of_light, error, "is %u; 1, 4, 9 or 16 is needed", candidates);

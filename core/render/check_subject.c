@@ -138,15 +138,21 @@ mu_answer mu_subject_ask_rounded(const mu_subject *subject, double epsilon, cons
 
 _Bool mu_subject_find_sampler(mu_subject *subject) {
     mu_stream random = mu_stream_make(0x73616d706c6572u, 0);
-    const double wo[3] = {.6, 0, .8};
+    /* samplers that turn up what falls below the horizon are told apart only where it does: seen from near it, in all
+     * azimuths, for the slopes may be few */
+    static const double height[] = {.8, .3, .05, .01};
     _Bool visible = 1, ndf = 1;
-    for (int n = 0; n < 32; n++) {
+    for (int n = 0; n < 128; n++) {
+        const double z = height[n / 2 % 4], r = sqrt(1 - z * z), turn = n < 64 ? 0 : 2.4 * n;
+        const double wo[3] = {r * cos(turn), r * sin(turn), z};
         double u[3];
         for (int c = 0; c < 3; c++) u[c] = mu_stream_uniform(&random);
         if (n & 1) u[2] = 0; /* the rarest of alternatives: what a mixture seldom draws */
         musurf_probe_sample s[3];
         for (int kind = 0; kind < 3; kind++)
             if (mu_subject_sample(subject, (musurf_sampler)kind, wo, u, &s[kind]) != MUSURF_OK) return 0;
+        visible = visible && s[MUSURF_SAMPLE_AS_SET].rejected == s[MUSURF_SAMPLE_VISIBLE].rejected;
+        ndf = ndf && s[MUSURF_SAMPLE_AS_SET].rejected == s[MUSURF_SAMPLE_NDF].rejected;
         for (int c = 0; c < 3; c++) {
             visible = visible && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_VISIBLE].wm[c];
             ndf = ndf && s[MUSURF_SAMPLE_AS_SET].wm[c] == s[MUSURF_SAMPLE_NDF].wm[c];

@@ -9,8 +9,8 @@ SAMPLERS = ("visible", "folded", "folded_uniform", "bounded", "visible_uniform",
 MASKINGS = ("separable", "height_correlated", "direction_correlated")
 TABLE = {"ndf": "tabulated", "histogram": {"bounds": [-0.5, 0.5, -0.5, 0.5], "weights": [[1, 2], [3, 4]]}}
 FLAKES = {"ndf": "discrete_ggx", "alpha": 0.3, "flakes": {"density": 1e6, "cone": 0.02}}
-# Each law of what these do beyond single scattering of smooth densities: a table's jumps (folded: from above like visible normals), a tail that hardly ends, light
-# turned up again, a smooth lobe, walks. The three maps take turns.
+# Each law of what these do beyond single scattering of smooth densities: a table's jumps (folded, which from above is visible
+# normals), a tail that hardly ends, light turned up again, a smooth lobe, walks. The three maps take turns.
 FEW = {"table": {**TABLE, "histogram": {"bounds": [-0.5, 0.5, -0.5, 0.5], "weights": [[1, 4], [5, 1]]}, "transform": MAPS["skew"],
                  "sampler": "folded"},
        "tail": {"ndf": "std", "alpha": 0.3, "gamma": 1.6, "transform": MAPS["mirror"]},

@@ -108,8 +108,8 @@ static void name_sampler(musurf_material *m, double noise) {
     else if (isnan(noise))
         snprintf(m->sampler, size, "%s: no other serves this material", name);
     else
-        snprintf(m->sampler, size, "%s: least noise measured, %.2f of visible's variance in a white furnace", name,
-                 noise);
+        snprintf(m->sampler, size, "%s: least noise measured, %.2f of visible's variance in a white furnace",
+                 name, noise);
 }
 
 static void *obtain(const musurf_host *host, size_t bytes) {
@@ -136,7 +136,8 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     memset(m, 0, sizeof *m);
     double noise = NAN;
     if (p.sampler_auto && !mu_is_mirror(&p.definition) && p.definition.multiple != MU_RANDOM_WALK)
-        p.definition.sampler = musurf_choose_sampler(&p.definition, in_float, (char *)m + head + (in_float ? double_bytes : 0), &noise);
+        p.definition.sampler = musurf_choose_sampler(
+            &p.definition, in_float, (char *)m + head + (in_float ? double_bytes : 0), &noise);
     m->parsed = p;
     if (host && COVERS(host, release) && host->allocate) {
         m->release = host->release;

@@ -15,7 +15,7 @@
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
-    "surface", "boxes|fit|make|measure|mesh|soup|statistics ...",
+    "surface", "boxes|fit|make|measure|mesh|read|soup|statistics ...",
     "Explicit microsurfaces: periodic heightfields that follow a distribution, and what is seen of them.\n",
     no_options,
     "  boxes       the exact visibility of square waves and boxes; see musurf surface boxes --help\n"
@@ -23,6 +23,8 @@ static const mu_usage usage = {
     "  make        a heightfield with the slopes of a distribution; see musurf surface make --help\n"
     "  measure     facets facing, visible, G1 and G2 under a linear map; see musurf surface measure --help\n"
     "  mesh        its triangles under a linear map as a POV-Ray, PLY or OBJ file; see musurf surface mesh "
+    "--help\n"
+    "  read        anybody's heightfield, brought into the form that make writes; see musurf surface read "
     "--help\n"
     "  soup        the exact visibility of triangles from a file; see musurf surface soup --help\n"
     "  statistics  slopes, normals, masking, visible normals, reflections; see musurf surface statistics "
@@ -79,6 +81,14 @@ _Bool mu_options_view(const mu_options *options, double w[3]) {
            (mu_refuse(options->usage, "--%s is \"%s\", which is all but horizontal", name, value), 0);
 }
 
+void mu_options_command(int argc, char **argv, size_t size, char *out) {
+    snprintf(out, size, "musurf surface");
+    for (int k = 0; k < argc; k++) {
+        const size_t length = strlen(out);
+        snprintf(out + length, size - length, " %s", argv[k]);
+    }
+}
+
 uint32_t mu_processors(void) {
     const long count = sysconf(_SC_NPROCESSORS_ONLN);
     return count < 1 ? 1 : count > 256 ? 256 : (uint32_t)count;
@@ -90,8 +100,8 @@ static const struct {
 } commands[] = {
     {"boxes", mu_command_surface_boxes}, {"fit", mu_command_surface_fit},
     {"make", mu_command_surface_make},   {"measure", mu_command_surface_measure},
-    {"mesh", mu_command_surface_mesh},   {"soup", mu_command_surface_soup},
-    {"statistics", mu_command_surface_statistics},
+    {"mesh", mu_command_surface_mesh},   {"read", mu_command_surface_read},
+    {"soup", mu_command_surface_soup},   {"statistics", mu_command_surface_statistics},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

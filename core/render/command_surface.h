@@ -12,6 +12,7 @@ int mu_command_surface_boxes(int argc, char **argv);
 int mu_command_surface_make(int argc, char **argv);
 int mu_command_surface_measure(int argc, char **argv);
 int mu_command_surface_mesh(int argc, char **argv);
+int mu_command_surface_read(int argc, char **argv);
 int mu_command_surface_soup(int argc, char **argv);
 int mu_command_surface_statistics(int argc, char **argv);
 int mu_command_surface_fit(int argc, char **argv);
@@ -23,6 +24,8 @@ size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, 
  * which rounds nothing. False after a line on stderr. */
 _Bool mu_options_transform(const mu_options *options, double m[4]);
 _Bool mu_options_view(const mu_options *options, double w[3]);
+/* "musurf surface ..." as it was called, for files' headers. */
+void mu_options_command(int argc, char **argv, size_t size, char *out);
 /* Threads to use unless told otherwise: 1 to 256. */
 uint32_t mu_processors(void);
 

@@ -160,7 +160,7 @@ static int make(const mu_making *making, const char *command) {
     mu_generator *g = mu_generator_make(&making->recipe);
     mu_fft *fft = mu_fft_make(making->recipe.n);
     int code = MU_EXIT_REFUSED;
-    mu_surface_info info = {&making->recipe, command, 0, {0, 0}, 0};
+    mu_surface_info info = {.recipe = &making->recipe, .command = command};
     const mu_spectral spectral = mu_fft_spectral(fft);
     if (!g || !fft || !fit(making, g, &spectral, &info.passes)) {
         mu_refuse(&usage, "not enough memory for a surface of size %u", making->recipe.n);
@@ -191,10 +191,7 @@ int mu_command_surface_make(int argc, char **argv) {
         if (!read_option(&making, &given, met)) return MU_EXIT_REFUSED;
     }
     if (!check(&making)) return MU_EXIT_REFUSED;
-    char command[1024] = "musurf surface";
-    for (int k = 0; k < argc; k++) {
-        const size_t length = strlen(command);
-        snprintf(command + length, sizeof command - length, " %s", argv[k]);
-    }
+    char command[1024];
+    mu_options_command(argc, argv, sizeof command, command);
     return make(&making, command);
 }

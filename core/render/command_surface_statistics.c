@@ -46,7 +46,8 @@ static const mu_option options[] = {
      "between these slopes (default: wide enough for 99 % along each axis, and 1.25 times)"},
     {"subsamples", "K", "points per facet: a square, 9 to 225 (default: 9)"},
     {"tracer", "own|embree|povray",
-     "what views see: own: exact, double precision (default); embree: float; povray: the program POV-Ray.\nReflections always by the "
+     "what views see: own: exact, double precision (default); embree: float; povray: the program "
+     "POV-Ray.\nReflections always by the "
      "first"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     MU_SURFACE_SOURCE_OPTIONS,
@@ -242,8 +243,9 @@ static _Bool gather(mu_inquiry *q, mu_error *error) {
         q->source.file = q->files[k];
         if (!mu_surface_read(&q->source, &surface, error)) return 0;
         const _Bool good =
-            surface.open ? mu_fail(error, "--border crop: all facets count here; measure has a window of them")
-                         : mu_gathering_add(&q->g, k, &surface.f, error);
+            surface.open
+                ? mu_fail(error, "--border crop: all facets count here; measure has a window of them")
+                : mu_gathering_add(&q->g, k, &surface.f, error);
         mu_surface_free(&surface);
         if (!good) return 0;
     }
@@ -274,7 +276,8 @@ static int run(mu_inquiry *q) {
 }
 
 int mu_command_surface_statistics(int argc, char **argv) {
-    mu_inquiry q = {.source = mu_surface_source_begin(), .g = {.m = {1, 0, 0, 1},
+    mu_inquiry q = {.source = mu_surface_source_begin(),
+                    .g = {.m = {1, 0, 0, 1},
                           .tracer = &mu_tracer_own,
                           .side = 3,
                           .threads = mu_processors(),

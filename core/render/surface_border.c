@@ -60,7 +60,9 @@ static void relax(const mu_heightfield *f, double *h, const size_t *holes, size_
     }
 }
 
-static _Bool close_holes(const mu_surface_source *s, const mu_heightfield *f, double *h, mu_error *error) {
+static _Bool close_holes(const mu_surface_source *s, mu_surface *surface, mu_error *error) {
+    const mu_heightfield *f = &surface->f;
+    double *h = surface->heights;
     size_t count = 0, first = 0;
     double low = INFINITY, high = -INFINITY;
     for (size_t k = mu_cells(f); k-- > 0;)
@@ -80,6 +82,7 @@ static _Bool close_holes(const mu_surface_source *s, const mu_heightfield *f, do
     guess(f, h, holes, count);
     relax(f, h, holes, count, high - low);
     free(holes);
+    surface->filled = count;
     mu_warn(error, "%s: %zu heights (%.3g %%) filled in; their facets are smoother than the rest", s->file,
             count, 100.0 * (double)count / (double)mu_cells(f));
     return 1;
@@ -94,7 +97,9 @@ static double mean_of(const mu_heightfield *f, const double *h) {
 }
 
 /* On a lattice the fit's three terms are orthogonal: the mean and two slopes by themselves. */
-static void level(const mu_heightfield *f, double *h, _Bool plane) {
+static void level(mu_surface *surface, _Bool plane) {
+    const mu_heightfield *f = &surface->f;
+    double *h = surface->heights;
     const double mean = mean_of(f, h), ci = 0.5 * (f->nx - 1), cj = 0.5 * (f->ny - 1);
     double top[2] = {0, 0}, bottom[2] = {0, 0};
     for (size_t k = 0; plane && k < mu_cells(f); k++) {
@@ -103,6 +108,7 @@ static void level(const mu_heightfield *f, double *h, _Bool plane) {
         top[1] += j * (h[k] - mean), bottom[1] += j * j;
     }
     const double a = plane ? top[0] / bottom[0] : 0, b = plane ? top[1] / bottom[1] : 0;
+    surface->plane[0] = mean, surface->plane[1] = a, surface->plane[2] = b;
     for (size_t k = 0; k < mu_cells(f); k++)
         h[k] -= mean + a * ((double)(k / f->ny) - ci) + b * ((double)(k % f->ny) - cj);
 }
@@ -177,8 +183,8 @@ static void blend(mu_surface *s) {
 
 _Bool mu_surface_prepare(const mu_surface_source *s, _Bool doubt_border, mu_surface *surface,
                          mu_error *error) {
-    if (!close_holes(s, &surface->f, surface->heights, error)) return 0;
-    if (s->level != MU_LEVEL_NONE) level(&surface->f, surface->heights, s->level == MU_LEVEL_PLANE);
+    if (!close_holes(s, surface, error)) return 0;
+    if (s->level != MU_LEVEL_NONE) level(surface, s->level == MU_LEVEL_PLANE);
     const uint32_t least = surface->f.nx < surface->f.ny ? surface->f.nx : surface->f.ny;
     const uint32_t most = surface->f.nx > surface->f.ny ? surface->f.nx : surface->f.ny;
     switch (s->border) {

@@ -22,14 +22,15 @@ static exr_result_t put_law(exr_context_t exr, const mu_slope_law *law) {
 }
 
 static exr_result_t put_head(exr_context_t exr, const void *context) {
+    static const char *const layouts[] = {"heights; scanline = x, pixel in it = y, cell 1, periodic",
+                                          "heights; scanline = x, pixel in it = y, cell 1, does not repeat"};
     const mu_surface_info *info = ((const mu_surface_job *)context)->info;
     char number[32];
     exr_result_t code = mu_exr_put_text(exr, "software", "musurf " MUSURF_VERSION);
-    code = code ? code
-                : mu_exr_put_text(exr, "layout", "heights; scanline = x, pixel in it = y, cell 1, periodic");
-    if (code || !info) return code;
-    code = exr_attr_set_string(exr, 0, "command", info->command);
-    code = code ? code : put_law(exr, &info->recipe->law);
+    code = code ? code : mu_exr_put_text(exr, "layout", layouts[info->open]);
+    code = code ? code : exr_attr_set_string(exr, 0, "command", info->command);
+    if (code || !info->recipe) return code;
+    code = put_law(exr, &info->recipe->law);
     snprintf(number, sizeof number, "%llu",
              (unsigned long long)info->recipe->seed); /* EXR has no 64-bit integers */
     code = code ? code : exr_attr_set_string(exr, 0, "seed", number);

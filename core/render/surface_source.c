@@ -15,13 +15,21 @@
 
 enum { CHANNEL, CELL, HEIGHT_SCALE, BORDER, LEVEL, FILL };
 
+const char *const *mu_border_names(void) {
+    static const char *const names[] = {"periodic", "crop", "mirror", "blend", NULL};
+    return names;
+}
+
+const char *const *mu_level_names(void) {
+    static const char *const names[] = {"none", "mean", "plane", NULL};
+    return names;
+}
+
 mu_surface_source mu_surface_source_begin(void) {
     return (mu_surface_source){.cell = 1, .height_scale = 1};
 }
 
 _Bool mu_surface_source_option(mu_surface_source *s, const mu_options *at, int index) {
-    static const char *const borders[] = {"periodic", "crop", "mirror", "blend", NULL};
-    static const char *const levels[] = {"none", "mean", "plane", NULL};
     int choice = 0;
     switch (index) {
     case CHANNEL:
@@ -34,12 +42,12 @@ _Bool mu_surface_source_option(mu_surface_source *s, const mu_options *at, int i
         if (!mu_options_numbers(at, 1, 1, &s->height_scale)) return 0;
         return s->height_scale != 0 || (mu_refuse(at->usage, "--height-scale is 0"), 0);
     case BORDER:
-        if (!mu_options_choice(at, borders, &choice)) return 0;
+        if (!mu_options_choice(at, mu_border_names(), &choice)) return 0;
         s->border = (mu_border)choice;
         s->border_given = 1;
         return 1;
     case LEVEL:
-        if (!mu_options_choice(at, levels, &choice)) return 0;
+        if (!mu_options_choice(at, mu_level_names(), &choice)) return 0;
         s->level = (mu_level)choice;
         return 1;
     default:
@@ -96,6 +104,7 @@ _Bool mu_surface_read(const mu_surface_source *s, mu_surface *out, mu_error *err
     *out = (mu_surface){.heights = read_values(s, &width, &height, &exr, error)};
     if (!out->heights) return 0;
     out->f = (mu_heightfield){out->heights, (uint32_t)height, (uint32_t)width};
+    out->pixels[0] = out->f.nx, out->pixels[1] = out->f.ny;
     _Bool good = (width >= MU_SURFACE_LEAST && height >= MU_SURFACE_LEAST && width <= MU_SURFACE_MOST &&
                   height <= MU_SURFACE_MOST) ||
                  mu_fail(error, "%s: is %d x %d; a heightfield has %d to %d pixels a side", s->file, width,

@@ -34,6 +34,10 @@ typedef enum mu_border {
 
 typedef enum mu_level { MU_LEVEL_NONE, MU_LEVEL_MEAN, MU_LEVEL_PLANE } mu_level;
 
+/* In their order, NULL last. */
+const char *const *mu_border_names(void);
+const char *const *mu_level_names(void);
+
 typedef struct mu_surface_source {
     const char *file, *channel; /* channel NULL: the only one */
     double cell, height_scale;
@@ -75,6 +79,9 @@ typedef struct mu_surface {
     double *heights;  /* f's */
     _Bool
         open; /* MU_BORDER_CROP: the last row and column of cells are none, rays must not leave the others */
+    uint32_t pixels[2]; /* the file's scanlines and pixels in each */
+    size_t filled;      /* holes closed */
+    double plane[3];    /* subtracted: the mean, and slopes along x and y about the middle */
 } mu_surface;
 
 /* Needs source->file. Warnings on what is suspicious. */

@@ -96,14 +96,15 @@ class Tabulated(unittest.TestCase):
         return x, y
 
     def test_a_heightfield_is_its_slopes(self):
-        h = self.heights()
-        x, y = self.slopes(h)
-        write_exr(self.folder / "h.exr", {"height": h})
-        bounds = [-4, 5, -6, 3]
-        self.assertTrue(x.min() > -4 and x.max() < 5 and y.min() > -6 and y.max() < 3)  # and lopsided on purpose
-        counts, _, _ = numpy.histogram2d(y, x, bins=24, range=[bounds[2:], bounds[:2]])
-        inline = tabulated({"bounds": bounds, "weights": counts.tolist()})
-        self.assertEqual(self.look(tabulated({"heightfield": "h.exr", "bins": 24, "range": bounds})), self.look(inline))
+        square = self.heights()
+        for h in (square, square[:, :30] / 8):  # the oblong one steps where it repeats
+            x, y = self.slopes(h)
+            write_exr(self.folder / "h.exr", {"height": h})
+            bounds = [-4, 5, -6, 3]
+            self.assertTrue(x.min() > -4 and x.max() < 5 and y.min() > -6 and y.max() < 3)  # and lopsided on purpose
+            counts, _, _ = numpy.histogram2d(y, x, bins=24, range=[bounds[2:], bounds[:2]])
+            inline = tabulated({"bounds": bounds, "weights": counts.tolist()})
+            self.assertEqual(self.look(tabulated({"heightfield": "h.exr", "bins": 24, "range": bounds})), self.look(inline))
 
     def test_without_a_range_all_slopes_count(self):
         """The projected area from a direction that sees every facet is w.(-mean slope, 1): here 0, the surface being periodic."""
@@ -156,8 +157,6 @@ class Tabulated(unittest.TestCase):
         self.refused(tabulated({"bounds": bounds, "file": "nan.exr"}), "no finite number")
         write_exr(self.folder / "negative.exr", {"Y": -one})
         self.refused(tabulated({"bounds": bounds, "file": "negative.exr"}), "out of range")
-        write_exr(self.folder / "oblong.exr", {"Y": one[:3]})
-        self.refused(tabulated({"heightfield": "oblong.exr"}), "square")
         write_exr(self.folder / "h.exr", {"Y": self.heights()})
         self.refused(tabulated({"heightfield": "h.exr", "range": [-1, 0.1, -1, 0.1]}), "lie outside")
         truncated = (self.folder / "h.exr").read_bytes()[:-100]

@@ -32,7 +32,7 @@ static const mu_usage usage = {
     "With crop the file holds the heights as they are, and commands that read it need --border crop again.\n"
     "out, one line of JSON:\n"
     "  \"file\", \"from\", \"pixels\"    written and read; scanlines and pixels in each of what was read\n"
-    "  \"size\", \"repeats\"           cells along x and y of what was written; 0 with crop, else 1\n"
+    "  \"size\", \"repeats\"           cells along x and y of what was written; false with crop\n"
     "  \"border\", \"level\", \"plane\"  as asked for; what level subtracted: the mean height, slopes along "
     "x and y\n"
     "  \"cell\", \"height_scale\"      as asked for\n"
@@ -60,7 +60,8 @@ static int report(const mu_asked *asked, const mu_surface *surface) {
     mu_json_string(&json, "from", asked->source.file);
     mu_json_numbers(&json, "pixels", pixels, 2);
     mu_json_numbers(&json, "size", size, 2);
-    mu_json_number(&json, "repeats", !surface->open);
+    const char *const repeats = surface->open ? "false" : "true";
+    mu_json_raw(&json, "repeats", repeats, strlen(repeats));
     mu_json_string(&json, "border", mu_border_names()[asked->source.border]);
     mu_json_string(&json, "level", mu_level_names()[asked->source.level]);
     mu_json_numbers(&json, "plane", surface->plane, 3);

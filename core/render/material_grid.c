@@ -135,16 +135,13 @@ static double *read_heightfield(const mu_place *place, size_t *count, mu_error *
         return NULL;
     float *heights = read_plane(place, "heightfield", &width, &height, error);
     double *values = NULL;
-    if (heights && width != height) {
-        mu_place_fail(place, error, "the heightfield has %d lines of %d pixels; it must be square", height,
-                      width);
-    } else if (heights) {
-        if (!range.value) mu_slope_bounds(heights, (size_t)width, bounds);
+    if (heights) {
+        if (!range.value) mu_slope_bounds(heights, (size_t)height, (size_t)width, bounds);
         values = make(place, (size_t)side, (size_t)side, bounds, count, error);
     }
     if (values) {
         const size_t outside =
-            mu_slope_histogram(heights, (size_t)width, bounds, (size_t)side, values + HEAD);
+            mu_slope_histogram(heights, (size_t)height, (size_t)width, bounds, (size_t)side, values + HEAD);
         if (outside) {
             mu_place_fail(&range, error,
                           "%zu of %zu slopes lie outside; without a range there is room for all", outside,

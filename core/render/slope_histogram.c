@@ -7,20 +7,20 @@
 #include <string.h>
 
 /* Of L = (i,j), (i+1,j), (i,j+1), then of U = (i+1,j+1), (i,j+1), (i+1,j). */
-static void slopes_of(const float *heights, size_t n, size_t i, size_t j, double slope[2][2]) {
-    const size_t next_i = (i + 1) % n, next_j = (j + 1) % n;
-    const double here = (double)heights[i * n + j], x = (double)heights[next_i * n + j],
-                 y = (double)heights[i * n + next_j], both = (double)heights[next_i * n + next_j];
+static void slopes_of(const float *heights, size_t nx, size_t ny, size_t i, size_t j, double slope[2][2]) {
+    const size_t next_i = (i + 1) % nx, next_j = (j + 1) % ny;
+    const double here = (double)heights[i * ny + j], x = (double)heights[next_i * ny + j],
+                 y = (double)heights[i * ny + next_j], both = (double)heights[next_i * ny + next_j];
     slope[0][0] = x - here, slope[0][1] = y - here;
     slope[1][0] = both - y, slope[1][1] = both - x;
 }
 
-void mu_slope_bounds(const float *heights, size_t n, double bounds[4]) {
+void mu_slope_bounds(const float *heights, size_t nx, size_t ny, double bounds[4]) {
     for (int k = 0; k < 2; k++) bounds[2 * k] = INFINITY, bounds[2 * k + 1] = -INFINITY;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) {
+    for (size_t i = 0; i < nx; i++)
+        for (size_t j = 0; j < ny; j++) {
             double slope[2][2];
-            slopes_of(heights, n, i, j, slope);
+            slopes_of(heights, nx, ny, i, j, slope);
             for (int t = 0; t < 4; t++) {
                 const double s = slope[t / 2][t % 2];
                 bounds[2 * (t % 2)] = fmin(bounds[2 * (t % 2)], s);
@@ -34,16 +34,16 @@ void mu_slope_bounds(const float *heights, size_t n, double bounds[4]) {
     }
 }
 
-size_t mu_slope_histogram(const float *heights, size_t n, const double bounds[4], size_t bins,
+size_t mu_slope_histogram(const float *heights, size_t nx, size_t ny, const double bounds[4], size_t bins,
                           double *weights) {
     size_t outside = 0;
     memset(weights, 0, bins * bins * sizeof *weights);
     const double per_x = (double)bins / (bounds[1] - bounds[0]),
                  per_y = (double)bins / (bounds[3] - bounds[2]);
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) {
+    for (size_t i = 0; i < nx; i++)
+        for (size_t j = 0; j < ny; j++) {
             double slope[2][2];
-            slopes_of(heights, n, i, j, slope);
+            slopes_of(heights, nx, ny, i, j, slope);
             for (int t = 0; t < 2; t++) {
                 const double x = (slope[t][0] - bounds[0]) * per_x, y = (slope[t][1] - bounds[2]) * per_y;
                 if (x >= 0 && x < (double)bins && y >= 0 && y < (double)bins)

@@ -38,7 +38,7 @@ def look(h, m, lights, views=VIEWS, fine=1, field=False):
         surface = povray.height_field(h, quantised, folder / "h.pgm") if field else povray.mesh2(h, m)
         image, _ = povray.run(povray.scene(surface, h, m, lights, povray.tiles(h, views)), folder, "look",
                               2 * len(h) * fine, len(h) * fine)
-        return povray.visibility(image, len(h), len(lights))
+        return povray.visibility(image, h.shape, len(lights))
 
 
 class Heightfields(unittest.TestCase):

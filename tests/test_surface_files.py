@@ -223,6 +223,54 @@ class Borders(Files):
         self.heights(self.folder / "ramp.pgm", "--level=plane")
 
 
+class Reading(Files):
+    """`surface read`: what it writes is, read without options, what other commands saw of the file with them."""
+
+    def read(self, file, *options, warning=""):
+        out = self.folder / "common.exr"
+        done = musurf("surface", "read", file, "-o", out, *options)
+        self.assertEqual(done.returncode, 0, done.err)
+        self.assertRegex(done.err, warning or "^$")
+        said = strict(done.out)
+        self.assertEqual((said["file"], said["from"]), (str(out), str(file)))
+        return out, said
+
+    def test_the_common_form_is_the_same_surface(self):
+        codes = self.random.integers(0, 65536, (20, 31))
+        write_png(self.folder / "h.png", codes)
+        write_pgm(self.folder / "h.pgm", codes)
+        write_tiff(self.folder / "h.tif", codes.astype("<u2"), 1)
+        units = ["--cell=0.3", "--height-scale=1.7e-4"]
+        for name, border, size in (("h.png", "periodic", (20, 31)), ("h.pgm", "mirror", (38, 60)), ("h.tif", "blend", (18, 28)),
+                                   ("h.png", "crop", (19, 30))):
+            with self.subTest(file=name, border=border):
+                options = [*units, f"--border={border}", "--level=plane"]
+                out, said = self.read(self.folder / name, *options)
+                again = ["--border=crop"] if border == "crop" else []
+                exact = self.heights(self.folder / name, *options)
+                found = self.heights(out, *again)
+                np.testing.assert_array_equal(found, exact.astype(np.float32))
+                self.assertEqual((said["pixels"], said["size"], said["repeats"]), ([20, 31], list(size), border != "crop"))
+                self.assertEqual(said["rounded"], abs(found - exact).max())
+                self.assertAlmostEqual(said["range"], np.ptp(exact), places=12)
+                i, j = np.meshgrid(np.arange(20) - 9.5, np.arange(31) - 15.0, indexing="ij")
+                plane, _, _, _ = np.linalg.lstsq(np.stack([np.ones_like(i), i, j], -1).reshape(-1, 3),
+                                                 codes.ravel() * 1.7e-4 / 0.3, rcond=None)
+                np.testing.assert_allclose(said["plane"], plane, rtol=1e-9)
+
+    def test_holes_are_counted_and_what_is_no_float_is_refused(self):
+        h = self.random.standard_normal((8, 9))
+        h[3, 4:6] = np.nan
+        write_exr(self.folder / "h.exr", h)
+        _, said = self.read(self.folder / "h.exr", "--fill", warning="2 heights")
+        self.assertEqual((said["filled"], said["level"], said["plane"]), (2, "none", [0, 0, 0]))
+        for words, options in (("not finite", []), ("too large for a float", ["--fill", "--height-scale=1e40"])):
+            out = self.folder / "none.exr"
+            done = musurf("surface", "read", self.folder / "h.exr", "-o", out, *options)
+            self.assertEqual((done.returncode, done.out, out.exists()), (2, "", False))
+            self.assertIn(words, done.err)
+
+
 class Repairs(Files):
     def test_level(self):
         i, j = np.meshgrid(np.arange(20.0), np.arange(30.0), indexing="ij")

@@ -59,8 +59,8 @@ def control(spec, views, name, m, wrong, job, original):
                           share=different[k] / int(job["total"]), tolerance=CONTROL_LIMIT)
 
 
-def blocks(jobs, key, *index):
-    return np.concatenate([job[key][index] for job in jobs], -1)
+def blocks(spec, jobs, key, *index):
+    return np.concatenate([statistics.folded(job[key][index], spec.folds) for job in jobs], -1)
 
 
 def smith(spec, core, views, name, m, jobs, limit):
@@ -69,14 +69,14 @@ def smith(spec, core, views, name, m, jobs, limit):
     parameters = spec.parameters
     g1, sigma = expect.masking(core, spec, m, directions)
     for k, (view, w) in enumerate(zip(views, directions)):
-        top, bottom = blocks(jobs, "projected", k)
+        top, bottom = blocks(spec, jobs, "projected", k)
         mean, error = statistics.ratio(top, bottom)
         error = np.hypot(error, patch(jobs))
         clip = laws.clipped(parameters, limit) / np.linalg.norm([*(m @ view[:2]), view[2]]) / np.pi * np.hypot(*view[:2])
         yield statistical("G1 projected mean", spec.name, name, label(view), mean, error, len(top) - 1, g1[k], tracer="povray",
                           exact=(g1[k] * (1 - SAMPLING), min(1.0, w[2] / max(sigma[k] - clip, w[2])) * (1 + SAMPLING)))
         scale = measure.nu(view, spec.alpha)
-        seen, every = blocks(jobs, f"bins{k}")
+        seen, every = blocks(spec, jobs, f"bins{k}")
         value, error = statistics.ratio(seen, every)
         error = np.hypot(error, patch(jobs))
         cuts = measure.edges(scale)
@@ -93,7 +93,7 @@ def smith(spec, core, views, name, m, jobs, limit):
 
 def visible(spec, core, view, w, name, m, jobs, k, cuts, deviations):
     """Normals seen, by total variation. Known: half the sum of every bin's mass times what its slope is known to be off."""
-    counts = np.concatenate([job["visible"][k] for job in jobs])
+    counts = blocks(spec, [{"visible": job["visible"].swapaxes(-1, -2)} for job in jobs], "visible", k).T
     mass, at, slopes = expect.visible_shares(core, spec, m, spec.alpha, w)
     along = measure.nu(view, spec.alpha) * np.tensordot(w[:2], slopes, 1) / w[2]
     off = np.array([max(abs(d[0]), abs(d[1])) for d in deviations])[np.clip(np.searchsorted(cuts, along, "right") - 1, 0, len(cuts) - 2)]
@@ -121,7 +121,7 @@ def joint(spec, core, views, name, m, jobs):
     directions = [maps.carried(m, v) for v in views]
     g1, _ = expect.masking(core, spec, m, directions)
     for number, (a, b) in enumerate(measure.pairs(views)):
-        both, seen_a, seen_b, every = blocks(jobs, "joint", number)
+        both, seen_a, seen_b, every = blocks(spec, jobs, "joint", number)
         ratio, error = statistics.dependence(both, seen_a, seen_b, every)
         error = np.hypot(error, patch(jobs))
         independent = (seen_a.sum(-1) * seen_b.sum(-1) / np.maximum(every.sum(-1), 1)).sum()

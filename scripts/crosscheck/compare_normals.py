@@ -31,7 +31,7 @@ def identity(spec, core, name, m, h):
     original, baked = original[:, chosen], baked[:, chosen]
     steepest = float(np.hypot(*original).max())
     eps = np.finfo(float).eps
-    tolerance = 16 * eps * (len(h) * np.linalg.cond(m) * steepest + np.ptp(h)) * (2 * steepest / spec.alpha**2 + 4 / spec.alpha)
+    tolerance = 16 * eps * (max(h.shape) * np.linalg.cond(m) * steepest + np.ptp(h)) * (2 * steepest / spec.alpha**2 + 4 / spec.alpha)
     u, w = normals.normals_of(original), normals.normals_of(baked)
     table = measured_material(h)
     both = [("measured D", table, {**table, "transform": m.tolist()})]

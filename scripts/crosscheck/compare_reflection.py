@@ -13,19 +13,19 @@ ESCAPING = 1e-3  # of the light, after 20 reflections of perfect mirrors: 1e-4 i
 RMS = (0.05, 0.10)
 
 
-def blocks(jobs, key):
-    return np.concatenate([job[key] for job in jobs])
+def blocks(spec, jobs, key):
+    return np.concatenate([statistics.folded(job[key].T, spec.folds).T for job in jobs])
 
 
 def reflection(spec, core, name, m, view, jobs):
     """view: in the space of the transformed surface."""
     said = expect.reflection(core, spec, m, view)
     parameters = spec.parameters
-    pixels, freedom = blocks(jobs, "pixels"), len(blocks(jobs, "pixels")) - 1
+    pixels, freedom = blocks(spec, jobs, "pixels"), len(blocks(spec, jobs, "pixels")) - 1
     common = {"tracer": "povray"}
 
     def against(check, key, predicted, away, extra=0.0, **more):
-        value, error = statistics.ratio(blocks(jobs, key), pixels)
+        value, error = statistics.ratio(blocks(spec, jobs, key), pixels)
         exact = (predicted * (1 - QUADRATURE), predicted * (1 + QUADRATURE))
         span = (exact[0] + predicted * away[0], exact[1] + predicted * away[1], away[2]) if away else \
             (0.0, 1.0, "none: any albedo")
@@ -40,13 +40,13 @@ def reflection(spec, core, name, m, view, jobs):
                                            ("random_walk", "random walk", said["walk"], said["walk_error"])):
         yield against(f"energy, all reflections: {label_}", "all_fresnel", predicted, known.all_orders(kind, parameters, m), extra,
                       fresnel="dielectric 5")
-    left = float(blocks(jobs, "all").sum() / pixels.sum())
+    left = float(blocks(spec, jobs, "all").sum() / pixels.sum())
     yield bounded("energy conserved", spec.name, name, label(view), left >= 1 - ESCAPING, measured=left, tolerance=ESCAPING, **common)
 
 
 def bins(spec, name, m, view, jobs, pixels, predicted, parameters, common):
     """The BRDF per bin of directions, times cosine and solid angle, by total variation; bins below .2 % are united."""
-    value, error = statistics.ratio(blocks(jobs, "bins").T, np.broadcast_to(pixels, (len(predicted), len(pixels))))
+    value, error = statistics.ratio(blocks(spec, jobs, "bins").T, np.broadcast_to(pixels, (len(predicted), len(pixels))))
     large = predicted >= 0.002
     value, error, predicted = ([*a[large], s] for a, s in zip((value, error, predicted), (
         value[~large].sum(), np.sqrt((error[~large] ** 2).sum()), predicted[~large].sum())))

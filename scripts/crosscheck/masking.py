@@ -27,12 +27,15 @@ def centre(bits):
 BLOCKS = 4  # per side; wide against the correlation length, so that blocks are nearly independent
 
 
+def block_of(values):
+    """The block of every cell, [i, j]."""
+    x, y = (np.arange(n) * BLOCKS // n for n in values.shape[:2])
+    return x[:, None] * BLOCKS + y
+
+
 def per_block(values):
     """Sums of [i, j, ...] over blocks of cells, [block]."""
-    n = len(values)
-    block = np.arange(n) * BLOCKS // n
-    index = (block[:, None] * BLOCKS + block[None, :]).ravel()
-    return np.bincount(index, values.reshape(n * n, -1).sum(1), BLOCKS * BLOCKS)
+    return np.bincount(block_of(values).ravel(), values.reshape(*values.shape[:2], -1).sum(-1).ravel(), BLOCKS * BLOCKS)
 
 
 def facing(slopes, v):
@@ -75,9 +78,7 @@ def binned(bits, slopes, v, scale, edges):
 
 def per_bin(values, kind, count):
     """Sums of [i, j, L|U] per block and bin, [block, bin]."""
-    n = len(values)
-    block = np.arange(n) * BLOCKS // n
-    where = (block[:, None] * BLOCKS + block)[..., None] * count + kind
+    where = block_of(values)[..., None] * count + kind
     return np.bincount(where.ravel(), values.ravel(), BLOCKS * BLOCKS * count).reshape(-1, count)
 
 

@@ -46,9 +46,8 @@ def bits(h, alpha, m, views, folder, label, lights=None, field=False, fine=FINE)
     surface = povray.height_field(h, quantised, folder / f"{label}.pgm") if field else povray.mesh2(h, turn @ m)
     around = [povray.turned(turn, light) for light in (directions if lights is None else lights)]
     text = povray.scene(surface, h, turn @ m, around, povray.tiles(h, views))
-    n = len(h)
-    image, used = povray.run(text, folder, label, 2 * n * fine, n * fine)
-    seen = povray.visibility(image, n, len(views))
+    image, used = povray.run(text, folder, label, 2 * h.shape[0] * fine, h.shape[1] * fine)
+    seen = povray.visibility(image, h.shape, len(views))
     found = {"bits": np.packbits(seen), "total": seen[0].size, "seconds": used["seconds"], "megabytes": used["megabytes"]}
     return found if lights is not None or field else {**found, **reduced(h, alpha, m, views, directions, seen)}
 

@@ -11,20 +11,21 @@ TRIANGLES = (((0, 0), (1, 0), (0, 1)), ((1, 1), (0, 1), (1, 0)))  # L and U as c
 
 
 def vertices(h, m):
-    """[N+1, N+1, 3]: the corners of one period, its far sides included, at M (i, j)."""
-    n = len(h)
-    i, j = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij")
+    """[Nx+1, Ny+1, 3]: the corners of one period, its far sides included, at M (i, j)."""
+    nx, ny = h.shape
+    i, j = np.meshgrid(np.arange(nx + 1.0), np.arange(ny + 1.0), indexing="ij")
     return np.stack([m[0, 0] * i + m[0, 1] * j, m[1, 0] * i + m[1, 1] * j, np.pad(h, (0, 1), mode="wrap")], -1)
 
 
-def triangles(n):
+def triangles(shape):
     """[i, j, L|U, 3]: indices into the flattened vertices."""
-    i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-    return np.stack([np.stack([(i + a) * (n + 1) + j + b for a, b in corners], -1) for corners in TRIANGLES], 2)
+    nx, ny = shape
+    i, j = np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij")
+    return np.stack([np.stack([(i + a) * (ny + 1) + j + b for a, b in corners], -1) for corners in TRIANGLES], 2)
 
 
 def baked_slopes(h, m):
     """Slopes [2, i, j, L|U] of the transformed facets, from the cross products of their baked edges."""
-    corner = vertices(h, m).reshape(-1, 3)[triangles(len(h))]
+    corner = vertices(h, m).reshape(-1, 3)[triangles(h.shape)]
     normal = np.cross(corner[..., 1, :] - corner[..., 0, :], corner[..., 2, :] - corner[..., 0, :])
     return np.stack([-normal[..., 0] / normal[..., 2], -normal[..., 1] / normal[..., 2]])

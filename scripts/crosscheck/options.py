@@ -11,8 +11,13 @@ DESCRIPTION = """Cross-checks musurf with POV-Ray on explicit microsurfaces: is 
 visible normals, G2 and the light reflected once and often agree with the core under M? Makes heightfields, bakes M into
 their vertices, has POV-Ray look at them, and says of every number: agrees, differs as Smith is known to, or FAILS.
 Finished measurements are kept in DIR/store: started again, it goes on where it was, with the same result to the bit.
+A surface of yours that does not repeat needs --border mirror (each of its facets in four mirror images: no mean slope, no
+skew, and errors from a quarter of the blocks) or blend.
 Verdicts on stdout; validate.json, fragment.html and pictures in DIR. Exit 0: none fails; 1: some do, or a part is
 missing; 2: usage; 130: interrupted."""
+
+
+READING = {"channel": "NAME", "cell": "C", "height-scale": "S", "border": "periodic|mirror|blend", "level": "none|mean|plane", "fill": None}
 
 
 def numbers(count):
@@ -62,7 +67,10 @@ def parse(arguments, build):
     how = p.add_mutually_exclusive_group()
     how.add_argument("--quick", action="store_true", help="two distributions, four maps (default)")
     how.add_argument("--full", action="store_true", help="seven distributions, eight maps up to condition 100, more views and lights")
-    p.add_argument("--heightfield", metavar="FILE", help="check this surface (as musurf surface make writes: EXR, n x n, periodic) instead")
+    p.add_argument("--heightfield", metavar="FILE", help="check this surface instead: EXR, PGM, PNG, TIFF ..., read by musurf surface read")
+    for name, value in READING.items():
+        how = {"metavar": value} if value else {"action": "store_true", "default": None}
+        p.add_argument(f"--{name}", help="of the heightfield; see musurf surface read --help", **how)
     p.add_argument("--transform", metavar="a,c,b,d", type=transform, action="append", default=[],
                    help="under this M, rows [a c] and [b d], and the identity instead; may be repeated")
     p.add_argument("--view", metavar="x,y,z", type=view, action="append", default=[],
@@ -79,4 +87,10 @@ def parse(arguments, build):
         p.error("--view: POV-Ray's image carries three views, one per colour; more were given")
     if options.scene and options.heightfield:
         p.error("SCENE and --heightfield: one of them")
+    given = {name: getattr(options, name.replace("-", "_")) for name in READING}
+    options.reading = [f"--{name}={value}" if value is not True else f"--{name}" for name, value in given.items() if value is not None]
+    if options.reading and not options.heightfield:
+        p.error(f"{options.reading[0].partition('=')[0]} is of --heightfield")
+    if options.border == "crop":
+        p.error("--border crop: POV-Ray is shown a surface that repeats; mirror or blend makes one of yours")
     return options

@@ -23,7 +23,7 @@ def save(figure, path):
 
 def raster(values):
     """[i, j, L|U] as an image with two columns per cell, row 0 at y = 0."""
-    return values.reshape(len(values), len(values), 2).transpose(1, 0, 2).reshape(len(values), -1)
+    return values.reshape(*values.shape[:2], 2).transpose(1, 0, 2).reshape(values.shape[1], -1)
 
 
 def first_bits(run):
@@ -35,14 +35,14 @@ def first_bits(run):
         originals, jobs = run.needs["masking", spec, look, name]
         for title, key in (("original", originals[0]), (name, jobs[0])):
             total = len(views) * int(run.got(key)["total"])
-            found.setdefault(title, compare_masking.unpacked(run.got(key))[:total].reshape(len(views), len(h), len(h), 2, -1))
+            found.setdefault(title, compare_masking.unpacked(run.got(key))[:total].reshape(len(views), *h.shape, 2, -1))
     return h, spec, views, found
 
 
 def surfaces(run, path, cells=96):
     """A corner of the first surface under every M from above in its own space, lit from M v: cos times visibility."""
     h, spec, views, bits = first_bits(run)
-    cells, view = min(cells, len(h)), min(1, len(views) - 1)
+    cells, view = min(cells, *h.shape), min(1, len(views) - 1)
     figure, axes = plt.subplots(2, len(run.plan.maps), figsize=(3.4 * len(run.plan.maps), 7), squeeze=False)
     for (above, below), (name, m) in zip(axes.T, run.plan.maps.items()):
         m = m @ spec.base
@@ -59,10 +59,10 @@ def surfaces(run, path, cells=96):
         different = bits[name] != bits["original"]
         colours = np.zeros((3, *raster(seen[0]).shape))
         colours[: len(seen)] = [raster(b) for b in seen]
-        below.imshow(colours.transpose(1, 2, 0), origin="lower", extent=(0, len(h), 0, len(h)))
+        below.imshow(colours.transpose(1, 2, 0), origin="lower", extent=(0, len(h), 0, h.shape[1]))
         i, j, upper = np.nonzero(different.any((0, -1)))
         below.plot(i + 0.25 + 0.5 * upper, j + 0.5, "wx")
-        below.set(title=f"{int(different.sum())} of {different.size} bits differ", xlim=(0, len(h)), ylim=(0, len(h)), xticks=[], yticks=[])
+        below.set(title=f"{int(different.sum())} of {different.size} bits differ", xlim=(0, len(h)), ylim=(0, h.shape[1]), xticks=[], yticks=[])
     return save(figure, path)
 
 

@@ -5,7 +5,7 @@
 Dual method: a top-down orthographic camera looks at one period, three parallel lights stand in the three directions,
 one per colour channel, and the finish returns 1 for every lit point whatever its slope. So each channel of a pixel is
 the visibility of one point from one direction. The camera's right and up are M-images, hence the points are, too:
-pixel (k, l) of a 2N s x N s image is the point M ((k + 1/2)/(2 s), (l + 1/2)/s), s^2 points in every facet.
+pixel (k, l) of a 2 Nx s x Ny s image is the point M ((k + 1/2)/(2 s), (l + 1/2)/s), s^2 points in every facet.
 """
 import os
 import pathlib
@@ -29,7 +29,7 @@ class PovrayError(Exception):
 def tiles(h, views):
     """Periods needed on each side so that a ray that leaves the middle one ends above the surface: range tan / N."""
     reach = max(np.ptp(h) * np.hypot(v[0], v[1]) / v[2] for v in views)
-    return max(1, int(np.ceil(reach / len(h))))
+    return max(1, int(np.ceil(reach / min(h.shape))))
 
 
 def upright(m):
@@ -57,7 +57,7 @@ def vector(p):
 
 def mesh2(h, m):
     """The period as mesh2 text with M baked into its vertices. The object itself is never transformed by M."""
-    points, faces = mesh.vertices(h, m).reshape(-1, 3), mesh.triangles(len(h)).reshape(-1, 3)
+    points, faces = mesh.vertices(h, m).reshape(-1, 3), mesh.triangles(h.shape).reshape(-1, 3)
     return "mesh2 {\nvertex_vectors {%d,\n%s\n}\nface_indices {%d,\n%s\n}\n}" % (
         len(points), ",\n".join("<%.17g,%.17g,%.17g>" % tuple(p) for p in points.tolist()),
         len(faces), ",\n".join("<%d,%d,%d>" % tuple(f) for f in faces.tolist()))
@@ -68,10 +68,10 @@ def height_field(h, quantised, path):
     levels, lowest, highest = quantised
     image = np.pad(levels, (0, 1), mode="wrap").T[::-1]
     path.write_bytes(b"P5\n%d %d\n65535\n" % (image.shape[1], image.shape[0]) + image.astype(">u2").tobytes())
-    n, rise = len(h), highest - lowest
+    (nx, ny), rise = h.shape, highest - lowest
     # from the unit cube, heights along y, to cells of size 1, heights along z
     return 'height_field { pgm "%s" matrix <%d,0,0, 0,0,%s, 0,%d,0, 0,0,%s> }' % (
-        path.name, n, number(rise), n, number(lowest))
+        path.name, nx, number(rise), ny, number(lowest))
 
 
 def scene(surface, h, m, lights, around):
@@ -79,8 +79,8 @@ def scene(surface, h, m, lights, around):
 
     `surface` is mesh2(h, m) or height_field with M = 1; the caller turns M and the lights upright.
     """
-    n = len(h)
-    x, y = m @ [n, 0], m @ [0, n]
+    nx, ny = h.shape
+    x, y = m @ [nx, 0], m @ [0, ny]
     centre = np.array([*(x + y) / 2, 0.0])
     text = ["#version 3.7;", "global_settings { assumed_gamma 1 ambient_light rgb 0 }",
             "camera { orthographic location %s direction <0,0,-1> right %s up %s }" % (
@@ -165,12 +165,12 @@ def read_ppm(path):
     return np.frombuffer(data, kind, offset=header.end()).reshape(int(header[2]), int(header[1]), 3)
 
 
-def visibility(image, n, directions=3):
-    """Bits [direction, i, j, L|U, point] from the image of 2N s x N s pixels; s^2 points in every facet."""
+def visibility(image, shape, directions=3):
+    """Bits [direction, i, j, L|U, point] from the image of 2 Nx s x Ny s pixels; s^2 points in every facet."""
     if not np.isin(image, (0, 255)).all():
         raise PovrayError("POV-Ray's image holds values between dark and lit; the finish is not 0 or 1")
-    fine = image.shape[0] // n
-    bits = (image[::-1] == 255).transpose(2, 1, 0)[:directions].reshape(directions, n, 2 * fine, n, fine).transpose(0, 1, 3, 2, 4)
+    (nx, ny), fine = shape, image.shape[0] // shape[1]
+    bits = (image[::-1] == 255).transpose(2, 1, 0)[:directions].reshape(directions, nx, 2 * fine, ny, fine).transpose(0, 1, 3, 2, 4)
     p, q = np.meshgrid(np.arange(2 * fine), np.arange(fine), indexing="ij")
     lower = 2 * p + 4 * q + 3 < 4 * fine  # x + y < 1 within the cell; equality cannot occur
     return np.stack([bits[..., lower], bits[..., ~lower][..., ::-1]], 3)

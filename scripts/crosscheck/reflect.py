@@ -27,8 +27,8 @@ def periods(h, m, view):
 def scene(h, m, view, index, level):
     """The period as mirrors, seen along the view in the space of the transformed surface."""
     around, turn = periods(h, m, view), povray.upright(m)
-    n, v, m = len(h), povray.turned(turn, view), turn @ m
-    x, y = m @ [n, 0], m @ [0, n]
+    (nx, ny), v, m = h.shape, povray.turned(turn, view), turn @ m
+    x, y = m @ [nx, 0], m @ [0, ny]
     centre = np.array([*(x + y) / 2, 0.0])
     vector = povray.vector
     text = ["#version 3.7;", f"global_settings {{ assumed_gamma 1 ambient_light rgb 0 max_trace_level {level} adc_bailout 0 }}",

@@ -60,7 +60,7 @@ class Run:
     def bits(self, spec, number, name, m, views, **how):
         h = self.heights[spec.name, number][0]
         label = f"{spec.name}-{number}-{name}-{how.pop('label', '')}".replace(" ", "_").replace("^", "").replace("/", "_")
-        weight = len(h) ** 2 * (1 if how.get("fine") == 1 else 4) / 65536
+        weight = h.size * (1 if how.get("fine") == 1 else 4) / 65536
         inputs = [h, spec.alpha, m, [*views], [list(w) for w in how.get("lights", [])], sorted((k, v) for k, v in how.items() if k != "lights")]
         return self.add("bits", weight, f"{spec.name}, surface {number + 1}, {name}", inputs,
                         lambda: measure.bits(h, spec.alpha, m, views, self.folder, label + store.digest(inputs)[:8], **how))

@@ -27,6 +27,18 @@ def ratio(top, bottom):
     return value, np.sqrt((residual**2).sum(-1) * count / (count - 1)) / bottom.sum(-1)
 
 
+def folded(values, folds):
+    """Sums over blocks [..., block] of a square of them; with folds, of a block and its mirror images in both axes, which
+    are the same piece of surface and scatter alike."""
+    if not folds:
+        return values
+    side = math.isqrt(values.shape[-1])
+    square = values.reshape(*values.shape[:-1], side, side)
+    half = (square + square[..., ::-1, :])[..., : side // 2, :]
+    half = (half + half[..., ::-1])[..., : side // 2]
+    return half.reshape(*values.shape[:-1], -1)
+
+
 def dependence(both, a, b, every):
     """(sum both / sum of what independence within each class predicts, its standard error); [class, block]."""
     total_a, total_b, count = (x.sum(-1, keepdims=True) for x in (a, b, every))

@@ -8,6 +8,7 @@ import json
 import pathlib
 import struct
 import subprocess
+import sys
 import tempfile
 import zlib
 
@@ -27,7 +28,7 @@ class Spec:
     """A distribution to make surfaces of: name, the material's parameters {"ndf", "alpha", ...}; its roughness as a scale."""
 
     def __init__(self, name, size, seed, **parameters):
-        self.name, self.size, self.seed, self.parameters, self.file = name, size, seed, parameters, None
+        self.name, self.size, self.seed, self.parameters, self.file, self.folds = name, size, seed, parameters, None, False
         self.base, self.whole = np.eye(2), None  # the material's own map; the material, if a scene gave one
         phong = parameters.get("exponent")
         self.alpha = float(np.sqrt(2 / (phong + 2)) if phong is not None else parameters["alpha"])
@@ -61,18 +62,34 @@ class Spec:
 
 
 class Given:
-    """A heightfield of the user's. Its material is the distribution of its own slopes, tabulated by the core."""
+    """A heightfield of the user's, as `musurf surface read` reads it: any kind of file, made periodic, in cells.
+
+    Its material is the distribution of its own slopes, tabulated by the core. `folds`: it holds each piece in four mirror
+    images, whose scatter is not independent.
+    """
 
     CELLS = 64  # a side, of the table
 
-    def __init__(self, file):
-        self.file, self.copy = pathlib.Path(file), None
-        try:
-            self.h = read_exr(self.file).astype(float)
-        except (OSError, ValueError, struct.error, zlib.error, IndexError, KeyError) as error:
-            raise SurfaceError(f"{file}: {error}") from None
-        if self.h.shape[0] != self.h.shape[1] or not 16 <= len(self.h) <= 2048 or not np.isfinite(self.h).all():
-            raise SurfaceError(f"{file}: is not n x n finite heights with n from 16 to 2048, but {self.h.shape}")
+    def __init__(self, core, file, reading=()):
+        self.file = pathlib.Path(file)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "h.exr"
+            done = subprocess.run([str(core.program), "surface", "read", str(file), *reading, "-o", str(path)],
+                                  capture_output=True, text=True, stdin=subprocess.DEVNULL, env=core.environment)
+            said = done.stderr.strip().splitlines() or [f"{file}: musurf surface read ended with {done.returncode}"]
+            if done.returncode:
+                raise SurfaceError(said[-1].removeprefix("musurf surface read: "))
+            if done.stderr:
+                print(done.stderr, end="", file=sys.stderr)
+            self.h, data, self.read = read_exr(path).astype(float), path.read_bytes(), json.loads(done.stdout)
+        del self.read["file"]
+        if not 16 <= min(self.h.shape) <= max(self.h.shape) <= 2048:
+            raise SurfaceError(f"{file}: has {' x '.join(map(str, self.h.shape))} cells; 16 to 2048 a side can be looked at")
+        # named after its heights, not after the file's bytes, so that no answer of the core outlives it
+        self.copy = core.store.folder.resolve() / f"heightfield-{store.digest(self.h)[:40]}.exr"
+        if not self.copy.exists():
+            store.write(self.copy, data)
+        self.folds = self.read["border"] == "mirror"
         self.name, self.size, self.base, self.parameters = self.file.name, len(self.h), np.eye(2), None
         self.alpha = float(np.median(np.hypot(*heightfield.slopes(self.h))))  # as of ggx
         if not self.alpha > 0:
@@ -82,13 +99,9 @@ class Given:
         return {"material": "musurf.microfacet", "ndf": "tabulated", "histogram": {"heightfield": str(self.copy), "bins": self.CELLS}}
 
     def heights(self, core, number):
-        """The one realisation. A copy named after its content is what the core reads, so that no answer outlives it."""
+        """The one realisation."""
         if number:
             raise SurfaceError("a given heightfield is one realisation")
-        data = self.file.read_bytes()
-        self.copy = core.store.folder.resolve() / f"heightfield-{store.digest(data)[:40]}.exr"
-        if not self.copy.exists():
-            store.write(self.copy, data)
         return self.h, float(np.hypot(*heightfield.slopes(self.h)).max())
 
 

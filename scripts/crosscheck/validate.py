@@ -30,12 +30,12 @@ def fragment(result, folder, timing):
     return "\n".join([*parts, tables.sections(result["checks"]), f"<p>{html.escape(times)}</p>"]) + "\n"
 
 
-def planned(options):
+def planned(options, core):
     """The plan, and {material that is left out: why}."""
     how = plan.Plan("full" if options.full else "quick", options.seed, options.size)
     left = {}
     if options.heightfield:
-        how.replace([surfaces.Given(options.heightfield)])
+        how.replace([surfaces.Given(core, options.heightfield, options.reading)])
     elif options.scene:
         found, left = scene.materials(options.scene, how.size, options.seed * 1000)
         how.replace(found)
@@ -44,10 +44,10 @@ def planned(options):
 
 def check(options, build, command):
     version, folder = povray.version(), pathlib.Path(options.output)
-    how, left = planned(options)
     fresh = not folder.exists()
     try:
         core = predict.Core(build / "musurf", store.Store(folder / "store"), options.plugin_path)
+        how, left = planned(options, core)
     except BaseException:
         if fresh:
             shutil.rmtree(folder, ignore_errors=True)
@@ -90,7 +90,8 @@ def written(rows, left, how, version, folder, steps, command):
               "summary": f"{count[verdicts.AGREES]} comparisons agree, {count[verdicts.KNOWN]} differ as Smith's model is known to, "
                          f"{count[verdicts.FAILS]} fail", "command": command, "povray": version, "size": how.size, "seed": how.seed,
               "significance": statistics.FAMILY, "left_out": left,
-              "surfaces": {s.name: {"material": s.material() if not s.file else str(s.file), "alpha": s.alpha, "map": s.base.tolist()}
+              "surfaces": {s.name: {"material": s.material() if not s.file else str(s.file), "alpha": s.alpha, "map": s.base.tolist(),
+                                    **({"read": s.read} if s.file else {})}
                            for s in how.surfaces},
               "realisations": {"looked at": how.seen, "normals": how.plain, "reflecting": how.mirrors},
               "looks": {name: [v.tolist() for v in views] for name, views, _ in how.looks},

@@ -8,7 +8,7 @@ import shutil
 import sys
 
 from . import options as command_line
-from . import pictures, plan, povray, predict, run as running, scene, statistics, steps as progress, store, surfaces, tables, verdicts
+from . import plan, povray, predict, run as running, scene, statistics, steps as progress, store, surfaces, tables, verdicts
 
 CAPTIONS = {"surfaces.png": "One surface under each M. Above: from above, lit from Mv (second view), M baked into the vertices. "
                             "Below, in the original's coordinates: visible from the three views (red, green, blue); crosses where a bit differs.",
@@ -57,6 +57,7 @@ def check(options, build, command):
         one = running.Run(how, core, version, scratch, steps, options.threads)
         rows, shares = measured(one, steps, scratch)
         with steps.step("pictures"):
+            from . import pictures  # matplotlib is slow to load, and a wrong option is told without it
             pictures.surfaces(one, folder / "surfaces.png")
             pictures.per_slope(rows, folder / "g1.png")
             pictures.distributions(shares, folder / "normals.png")

@@ -142,6 +142,8 @@ class Extremes(unittest.TestCase):
         for alpha in (0.0, 1e-300, 1e-40, 1e-7, 0.5, 1.0):
             for ndf, gammas in (("ggx", (None,)), ("beckmann", (None,)), ("gtr", (0.0, 1.0, 1.7, 2.0, 1e6))):
                 for gamma in gammas:
+                    if gamma is not None and 1 <= gamma < 2 and 0 < alpha < 1e-140:
+                        continue  # documented as refused: no map holds such slopes
                     for length in (1e-300, 1.0, 1e300):
                         material = {"material": "musurf.microfacet", "ndf": ndf, "alpha": alpha}
                         if gamma is not None:

@@ -89,11 +89,6 @@ class Spline(unittest.TestCase):
         self.assertEqual((law["MASKING"], law["SAMPLE_PDF"], law["REJECTION"]), ("FAILED", "ok", "ok"))
         self.assertEqual(self.check(microfacet(ndf="gtr", alpha=0.01, gamma=1.5, sampler="mixed")).returncode, 0)
 
-    def test_check_passes_over_what_scatters_several_times(self):
-        for how in ("compensated", "random_walk"):
-            done = self.check(microfacet(ndf="ggx", alpha=0.5, multiple_scattering=how))
-            self.assertIn("the laws are those of single scattering", done.err)
-            self.assertEqual(done.returncode, 0, done.out)
 
     def test_the_sampler_is_the_papers_own(self):
         """Unless it says ndf. `pdf` tells them apart."""

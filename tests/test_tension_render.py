@@ -72,7 +72,7 @@ class Render(unittest.TestCase):
         return picture
 
     def item(self, m=None, tension=False, **more):
-        material = microfacet(alpha=0.25, fresnel={"conductor": "Ag"})
+        material = microfacet(alpha=0.25, fresnel={"conductor": "Ag"}, sampler="visible")  # else each map gets the sampler that suits it
         if m is not None:
             material["transform"] = np.asarray(m).tolist()
         return dict({"mesh": "m", "material": material}, **({"tension": {"rest": "rest.obj"}} if tension else {}), **more)

@@ -109,6 +109,8 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     albedo_source source = {
         .definition = &single, .error = d->compensation_error, .halvings = ALBEDO_HALVINGS};
     source.surface = MU(mu_surface_make)(&single, single_at);
+    /* what a lattice is off by does not fall as cells do: refining would chase it (albedo_quadrature.c) */
+    if (source.surface->kernel->traits & HAS_JUMPS) source.halvings = 2;
     size_t used = mu_albedo_make(&source, &out->level[0], out->values, most);
     out->levels = 1;
     out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, 0};

@@ -40,7 +40,8 @@ enum {
     PICKS = 1,       /* sample_visible uses u[2] */
     ANISOTROPIC = 2, /* turning the microsurface changes it */
     IS_UNIT_GGX = 4, /* may be sampled within a bound, bounded.h */
-    IS_DELTA = 8     /* one normal: directions have probabilities, not densities */
+    IS_DELTA = 8,    /* one normal: directions have probabilities, not densities */
+    HAS_JUMPS = 16   /* P22 is not smooth: no rule for smooth integrands converges on it */
 };
 
 /* A prepared distribution. What `shape` holds is each one's own business. */

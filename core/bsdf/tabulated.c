@@ -55,7 +55,7 @@ static double prepare(base *b, const mu_definition *d, void *table) {
     return mu_tabulated_spread(covariance);
 }
 
-enum { TRAITS = PICKS | ANISOTROPIC };
+enum { TRAITS = PICKS | ANISOTROPIC | HAS_JUMPS };
 
 #define DISTRIBUTION tabulated
 #include "core/bsdf/transformed.h"

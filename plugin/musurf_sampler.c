@@ -9,7 +9,7 @@
 
 #include "plugin/musurf_compiled.h"
 
-enum { VIEWS = 4, SAMPLES = 1024 };
+enum { VIEWS = 4, SAMPLES = 256 };
 #define WORTH 0.98 /* of the second moment: what another density per call, and no short plan, has to save */
 
 /* The surface under test, in the precision it is shaded in: double has no tables, and takes its time. */

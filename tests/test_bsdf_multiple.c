@@ -7,8 +7,7 @@
  * Random comparisons are Z-tests at the family's level (significance.h). A furnace holds compensation to 1 % and 4
  * standard errors: 1 % is what the tables were made for.
  */
-#include "tests/bsdf_fixture.h"
-#include "tests/moments.h"
+#include "tests/scattering_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,54 +20,12 @@ static const struct base_case {
 static const double maps[][4] = {{1, 0, 0, 1}, {1, 2, 0, 1}, {-1, 0.3, 0.2, 0.6}};
 enum { BASES = sizeof bases / sizeof bases[0], MAPS = sizeof maps / sizeof maps[0] };
 
-typedef struct scene {
-    mu_definition d;
-    void *memory;
-    mu_surface_f *s;
-    mu_closure_f c;
-} scene;
-
 static mu_definition definition_of(int base, int m, mu_scattering multiple) {
     mu_definition d = bsdf_definition(bases[base].ndf, bases[base].alpha, bases[base].gamma, maps[m][0],
                                       maps[m][1], maps[m][2], maps[m][3]);
     d.exponent = bases[base].exponent;
     d.multiple = multiple;
     return d;
-}
-
-static void make(scene *b, const mu_definition *d) {
-    mu_complaint why;
-    assert_true(mu_definition_check(d, &why));
-    b->d = *d;
-    b->memory = aligned_alloc(64, (mu_surface_bytes_f(d) + 63) / 64 * 64);
-    b->s = mu_surface_make_f(d, b->memory);
-}
-
-static void view(scene *b, const double w[3]) {
-    const float wo[3] = {(float)w[0], (float)w[1], (float)w[2]};
-    assert_true(mu_bind_f(b->s, wo, NULL, &b->c));
-}
-
-static void sample_once(const scene *b, uniform *u, mu_sample_f *out) {
-    const float v[3] = {uniform_float(u), uniform_float(u), uniform_float(u)};
-    mu_sample_wi_f(&b->c, v, out);
-}
-
-/* Mean energy of n samples: importance, so that eta does not scale it. */
-static void furnace(scene *b, uniform *u, int n, moments *energy) {
-    b->c.importance = 1;
-    for (int i = 0; i < n; i++) {
-        mu_sample_f s;
-        sample_once(b, u, &s);
-        accumulate(energy, s.rejected ? 0 : (double)s.weight[0]);
-    }
-}
-
-static void holds(const moments *m, double truth, double slack) {
-    const double mean = m->sum / m->n, error = sqrt(fmax(m->squares / m->n - mean * mean, 0) / m->n);
-    if (fabs(mean - truth) <= slack + 4 * error) return;
-    print_error("energy %.5f +- %.5f, expected %.5f +- %.5f\n", mean, error, truth, slack);
-    fail();
 }
 
 /* Walks end with all their light, but for those of more than 128 facets: 1e-4 of any surface here. */

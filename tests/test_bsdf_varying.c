@@ -5,30 +5,12 @@
  * evaluation, sampling, density and exchanged directions agree. The furnace: F = 1, held to what the tables were made for
  * and 4 standard errors of sampled weights.
  */
-#include "tests/bsdf_fixture.h"
-#include "tests/moments.h"
-
-#include <stdlib.h>
-
-typedef struct scene {
-    mu_definition d;
-    void *memory;
-    mu_surface_f *s;
-    mu_closure_f c;
-} scene;
+#include "tests/scattering_fixture.h"
 
 static mu_definition varying(mu_ndf ndf, double alpha, double error) {
     mu_definition d = bsdf_definition(ndf, alpha, 2, 1, 0, 0, 1);
     d.multiple = MU_COMPENSATED, d.compensation_varies = 1, d.compensation_error = error;
     return d;
-}
-
-static void make(scene *b, const mu_definition *d) {
-    mu_complaint why;
-    assert_true(mu_definition_check(d, &why));
-    b->d = *d;
-    b->memory = aligned_alloc(64, (mu_surface_bytes_f(d) + 63) / 64 * 64);
-    b->s = mu_surface_make_f(d, b->memory);
 }
 
 /* Any M, mirrors among them, by which slopes of roughness alpha become rough by 1/128 ... 2 along its axes. */
@@ -42,19 +24,14 @@ static void within(uniform *u, double alpha, float m[4]) {
     m[3] = (float)(-a * sin(s) * sin(t) + flip * b * cos(s) * cos(t));
 }
 
-static void view(scene *b, uniform *u, const float m[4]) {
+static void view_under(scene *b, uniform *u, const float m[4]) {
     double w[3];
     bsdf_direction(0.002 + 0.998 * pow(uniform_double(u), 2), 7 * uniform_double(u), w);
     const float wo[3] = {(float)w[0], (float)w[1], (float)w[2]};
     assert_true(mu_bind_f(b->s, wo, m, &b->c));
 }
 
-static void sample_once(const scene *b, uniform *u, mu_sample_f *out) {
-    const float v[3] = {uniform_float(u), uniform_float(u), uniform_float(u)};
-    mu_sample_wi_f(&b->c, v, out);
-}
-
-static void furnace(const scene *b, uniform *u, double slack) {
+static void furnace_under(const scene *b, uniform *u, double slack) {
     moments energy = {0};
     for (int i = 0; i < 8000; i++) {
         mu_sample_f s;
@@ -95,11 +72,11 @@ static void keeps_light_under_any_map(void **state) {
     for (int k = 0; k < 60; k++) {
         float m[4];
         within(&u, d.alpha, m);
-        view(&b, &u, m);
-        furnace(&b, &u, 0.01);
+        view_under(&b, &u, m);
+        furnace_under(&b, &u, 0.01);
         pointwise(&b, &u, m);
         mu_blur_f(&b.c, (float)exp2(-5 * uniform_double(&u)));
-        furnace(&b, &u, 0.01);
+        furnace_under(&b, &u, 0.01);
     }
     free(b.memory);
 }
@@ -114,10 +91,10 @@ static void keeps_light_of_another(void **state) {
     for (int k = 0; k < 30; k++) {
         float m[4];
         within(&u, d.alpha, m);
-        view(&b, &u, m);
-        furnace(&b, &u, 0.05);
+        view_under(&b, &u, m);
+        furnace_under(&b, &u, 0.05);
         mu_blur_f(&b.c, (float)exp2(-5 * uniform_double(&u)));
-        furnace(&b, &u, 0.05);
+        furnace_under(&b, &u, 0.05);
     }
     free(b.memory);
 }

@@ -81,6 +81,24 @@ _Bool mu_options_view(const mu_options *options, double w[3]) {
            (mu_refuse(options->usage, "--%s is \"%s\", which is all but horizontal", name, value), 0);
 }
 
+_Bool mu_surface_options(const mu_usage *of, int argc, char **argv, mu_option_reader *read, void *asked,
+                         const char **file, int *code) {
+    int met;
+    mu_options given = mu_options_begin(of, argc, argv);
+    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
+        if (met == MU_OPTIONS_OPERAND) {
+            if (*file) return *code = mu_refuse(of, "one FILE, but \"%s\" is a second", given.value), 0;
+            *file = given.value;
+        } else if (met < 0) {
+            return *code = mu_options_exit(met), 0;
+        } else if (!read(asked, &given, met)) {
+            return *code = MU_EXIT_REFUSED, 0;
+        }
+    }
+    if (!*file) return *code = mu_refuse(of, "a heightfield FILE is needed"), 0;
+    return 1;
+}
+
 void mu_options_command(int argc, char **argv, size_t size, char *out) {
     snprintf(out, size, "musurf surface");
     for (int k = 0; k < argc; k++) {

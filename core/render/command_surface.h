@@ -24,6 +24,11 @@ size_t mu_options_numbers(const mu_options *options, size_t least, size_t most, 
  * which rounds nothing. False after a line on stderr. */
 _Bool mu_options_transform(const mu_options *options, double m[4]);
 _Bool mu_options_view(const mu_options *options, double w[3]);
+/* Takes in one option of a command's own; false after a line on stderr. `asked` is the command's. */
+typedef _Bool mu_option_reader(void *asked, const mu_options *at, int met);
+/* The options of a command and its one heightfield FILE, which it needs. True to go on; else *code is what to exit with. */
+_Bool mu_surface_options(const mu_usage *usage, int argc, char **argv, mu_option_reader *read, void *asked,
+                         const char **file, int *code);
 /* "musurf surface ..." as it was called, for files' headers. */
 void mu_options_command(int argc, char **argv, size_t size, char *out);
 /* Threads to use unless told otherwise: 1 to 256. */

@@ -71,7 +71,8 @@ static _Bool read_share(const mu_options *at, double *out) {
            (mu_refuse(&usage, "--%s is %g; it must lie between 0 and 1", at->name, *out), 0);
 }
 
-static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
+static _Bool read_option(void *to, const mu_options *at, int met) {
+    mu_asked *asked = to;
     if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
     switch (met) {
     case TRANSFORM:
@@ -149,18 +150,7 @@ static int fit(mu_asked *asked) {
 int mu_command_surface_fit(int argc, char **argv) {
     mu_asked asked = {
         .source = mu_surface_source_begin(), .fit = {.keep = 0.999, .tolerance = 0.02}, .m = {1, 0, 0, 1}};
-    int met;
-    mu_options given = mu_options_begin(&usage, argc, argv);
-    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
-        if (met == MU_OPTIONS_OPERAND) {
-            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.source.file = given.value;
-        } else if (met < 0) {
-            return mu_options_exit(met);
-        } else if (!read_option(&asked, &given, met)) {
-            return MU_EXIT_REFUSED;
-        }
-    }
-    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    int code;
+    if (!mu_surface_options(&usage, argc, argv, read_option, &asked, &asked.source.file, &code)) return code;
     return fit(&asked);
 }

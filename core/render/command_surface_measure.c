@@ -80,7 +80,8 @@ static _Bool read_bins(mu_asked *asked, const mu_options *at) {
     return 1;
 }
 
-static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
+static _Bool read_option(void *to, const mu_options *at, int met) {
+    mu_asked *asked = to;
     uint64_t number = 0;
     int choice = 0;
     if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
@@ -213,19 +214,8 @@ int mu_command_surface_measure(int argc, char **argv) {
     mu_asked asked = {
         .source = mu_surface_source_begin(),
         .s = {.m = {1, 0, 0, 1}, .tracer = &mu_tracer_own, .side = 3, .threads = mu_processors()}};
-    int met;
-    mu_options given = mu_options_begin(&usage, argc, argv);
-    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
-        if (met == MU_OPTIONS_OPERAND) {
-            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.source.file = given.value;
-        } else if (met < 0) {
-            return mu_options_exit(met);
-        } else if (!read_option(&asked, &given, met)) {
-            return MU_EXIT_REFUSED;
-        }
-    }
-    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    int code;
+    if (!mu_surface_options(&usage, argc, argv, read_option, &asked, &asked.source.file, &code)) return code;
     if (!asked.s.view_count) return mu_refuse(&usage, "at least one --view is needed");
     return measure(&asked);
 }

@@ -44,7 +44,8 @@ typedef struct mu_asked {
     int format; /* -1: by the ending */
 } mu_asked;
 
-static _Bool read_option(mu_asked *asked, const mu_options *at, int met) {
+static _Bool read_option(void *to, const mu_options *at, int met) {
+    mu_asked *asked = to;
     uint64_t number = 0;
     if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
     switch (met) {
@@ -112,19 +113,8 @@ static int report(const mu_asked *asked) {
 
 int mu_command_surface_mesh(int argc, char **argv) {
     mu_asked asked = {.source = mu_surface_source_begin(), .mesh = {.m = {1, 0, 0, 1}}, .format = -1};
-    int met;
-    mu_options given = mu_options_begin(&usage, argc, argv);
-    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
-        if (met == MU_OPTIONS_OPERAND) {
-            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.source.file = given.value;
-        } else if (met < 0) {
-            return mu_options_exit(met);
-        } else if (!read_option(&asked, &given, met)) {
-            return MU_EXIT_REFUSED;
-        }
-    }
-    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    int code;
+    if (!mu_surface_options(&usage, argc, argv, read_option, &asked, &asked.source.file, &code)) return code;
     if (!asked.output) return mu_refuse(&usage, "-o FILE is needed");
     mu_error error = {.text = ""};
     if (!choose_format(&asked)) return MU_EXIT_REFUSED;

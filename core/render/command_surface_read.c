@@ -86,23 +86,17 @@ static _Bool fits(const mu_surface *surface, const char *file, mu_error *error) 
     return 1;
 }
 
+static _Bool read_option(void *to, const mu_options *at, int met) {
+    mu_asked *asked = to;
+    if (met >= SOURCE) return mu_surface_source_option(&asked->source, at, met - SOURCE);
+    asked->output = at->value;
+    return 1;
+}
+
 int mu_command_surface_read(int argc, char **argv) {
     mu_asked asked = {.source = mu_surface_source_begin()};
-    int met;
-    mu_options given = mu_options_begin(&usage, argc, argv);
-    while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
-        if (met == MU_OPTIONS_OPERAND) {
-            if (asked.source.file) return mu_refuse(&usage, "one FILE, but \"%s\" is a second", given.value);
-            asked.source.file = given.value;
-        } else if (met < 0) {
-            return mu_options_exit(met);
-        } else if (met == OUTPUT) {
-            asked.output = given.value;
-        } else if (!mu_surface_source_option(&asked.source, &given, met - SOURCE)) {
-            return MU_EXIT_REFUSED;
-        }
-    }
-    if (!asked.source.file) return mu_refuse(&usage, "a heightfield FILE is needed");
+    int code;
+    if (!mu_surface_options(&usage, argc, argv, read_option, &asked, &asked.source.file, &code)) return code;
     if (!asked.output) return mu_refuse(&usage, "-o FILE is needed");
     mu_error error = {.text = ""};
     if (!mu_output_check(asked.output, &error)) return mu_refuse(&usage, "%s", error.text);
@@ -113,7 +107,7 @@ int mu_command_surface_read(int argc, char **argv) {
     const mu_surface_info info = {.command = command, .open = surface.open};
     const _Bool good = fits(&surface, asked.source.file, &error) &&
                        mu_surface_write(asked.output, &surface.f, &info, &error);
-    const int code = good ? report(&asked, &surface) : mu_refuse(&usage, "%s", error.text);
+    code = good ? report(&asked, &surface) : mu_refuse(&usage, "%s", error.text);
     mu_surface_free(&surface);
     return code;
 }

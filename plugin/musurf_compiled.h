@@ -9,6 +9,7 @@
 #ifndef MUSURF_COMPILED_H
 #define MUSURF_COMPILED_H
 
+#include "plugin/musurf_map.h"
 #include "plugin/musurf_parameters.h"
 #include "plugin/musurf_probe.h"
 
@@ -43,6 +44,7 @@ typedef struct bound {
 mu_sampler musurf_choose_sampler(const mu_definition *definition, int in_float, void *memory, double *noise);
 
 extern const musurf_probe musurf_probe_table;
+extern const musurf_map musurf_map_table;
 
 uint32_t musurf_setup(const musurf_material *material, const float wo[3], const float *slots, uint32_t mode,
                       void *closure);

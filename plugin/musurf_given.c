@@ -113,18 +113,27 @@ musurf_result musurf_gather(given *g, const musurf_setting *settings, size_t cou
     return MUSURF_OK;
 }
 
+int musurf_varies(const given *g, uint32_t id) {
+    const musurf_setting *s = g->by_id[id];
+    return s && COVERS(s, source) && s->source == MUSURF_SLOT;
+}
+
+static const double *values_of(const given *g, uint32_t id) {
+    return g->by_id[id] && !musurf_varies(g, id) ? g->by_id[id]->values : musurf_parameters[id - 1].initial;
+}
+
 double musurf_number(const given *g, uint32_t id) {
-    return g->by_id[id] ? g->by_id[id]->values[0] : musurf_parameters[id - 1].initial[0];
+    return values_of(g, id)[0];
 }
 
 void musurf_numbers(const given *g, uint32_t id, size_t count, double *out) {
-    memcpy(out, g->by_id[id] ? g->by_id[id]->values : musurf_parameters[id - 1].initial, count * sizeof *out);
+    memcpy(out, values_of(g, id), count * sizeof *out);
 }
 
 int musurf_differs(const given *g, uint32_t id) {
     const musurf_param *p = &musurf_parameters[id - 1];
     const musurf_setting *s = g->by_id[id];
-    if (!s || p->flags & MUSURF_NO_DEFAULT) return s != NULL;
+    if (!s || p->flags & MUSURF_NO_DEFAULT || musurf_varies(g, id)) return s != NULL;
     if (p->kind == MUSURF_CHOICE) return strcmp(s->text, p->initial_choice) != 0;
     return memcmp(s->values, p->initial, numbers_of(p->kind) * sizeof *p->initial) != 0;
 }

@@ -11,6 +11,7 @@
 
 #include "core/bsdf/padded.h"
 #include "plugin/musurf_compiled.h"
+#include "plugin/musurf_given.h"
 
 /* One that no M moves. */
 static int is_plain_mirror(const mu_definition *d) {
@@ -188,7 +189,7 @@ static void release(musurf_material *material) {
 }
 
 static uint32_t slot_floats(const parsed *p) {
-    const uint32_t map = p->varying ? p->slot + 4 : 0,
+    const uint32_t map = p->composed ? musurf_varying_slots(&p->shape) : p->varying ? p->slot + 4 : 0,
                    footprint = p->footprint_from == FOOTPRINT_SLOT ? p->footprint_slot + 6 : 0;
     return map > footprint ? map : footprint;
 }
@@ -213,6 +214,7 @@ static void describe(const musurf_material *m, musurf_plan *plan) {
 }
 
 static const void *extension(const char *id) {
+    if (strcmp(id, MUSURF_MAP_ID) == 0) return &musurf_map_table;
     return strcmp(id, MUSURF_PROBE_ID) == 0 ? &musurf_probe_table : NULL;
 }
 

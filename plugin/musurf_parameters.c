@@ -36,10 +36,10 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      CHOICE("ggx", ndf_choices)},
     {HEAD(2, "alpha", "Slope roughness"),
      "Slope roughness of the untransformed microsurface; 0 is a mirror. At most 1 for gtr. Set this or "
-     "roughness.",
-     SCALAR("", 0, 0, INFINITY, 0, 1, 0.3)},
+     "roughness. It may vary (1e-6 and more) for ggx, beckmann, std and the discrete ones without tilt.",
+     SCALAR("", MUSURF_MAY_VARY, 0, INFINITY, 0, 1, 0.3)},
     {HEAD(3, "roughness", "Roughness"), "Perceptual roughness: alpha is its square. Set this or alpha.",
-     SCALAR("", 0, 0, INFINITY, 0, 1, 0.54772255750516612)},
+     SCALAR("", MUSURF_MAY_VARY, 0, INFINITY, 0, 1, 0.54772255750516612)},
     {HEAD(4, "gamma", "Tail"),
      "Tail of gtr (0 is the longest, 1 Berry's; then alpha is 0 or at least 1e-140) and of std (above 1.5): "
      "2 equals "
@@ -52,7 +52,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(6, "stretch", "Stretch"),
      "Area-preserving stretch s of the microsurface: diag(1/(1-s), 1-s) for s >= 0, diag(1+s, 1/(1+s)) "
      "below; applied after anisotropy and before transform.",
-     SCALAR("", MUSURF_MIN_EXCLUDED | MUSURF_MAX_EXCLUDED, -1, 1, -0.9, 0.9, 0)},
+     SCALAR("", MUSURF_MAY_VARY | MUSURF_MIN_EXCLUDED | MUSURF_MAX_EXCLUDED, -1, 1, -0.9, 0.9, 0)},
     {HEAD(7, "fresnel", "Fresnel"),
      "Reflectance of a facet: none (all light is reflected), schlick, dielectric or conductor.",
      CHOICE("none", fresnel_choices)},
@@ -86,12 +86,12 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(15, "alpha_x", "Slope roughness along x"),
      "Slope roughness along the tangent, before rotation; with alpha_y it makes any distribution "
      "anisotropic. alpha is then sqrt(alpha_x alpha_y) unless set.",
-     SCALAR("", MUSURF_NO_DEFAULT, 0, INFINITY, 0, 1, 0.3)},
+     SCALAR("", MUSURF_MAY_VARY | MUSURF_NO_DEFAULT, 0, INFINITY, 0, 1, 0.3)},
     {HEAD(16, "alpha_y", "Slope roughness along y"), "Slope roughness across the tangent, before rotation.",
-     SCALAR("", MUSURF_NO_DEFAULT, 0, INFINITY, 0, 1, 0.3)},
+     SCALAR("", MUSURF_MAY_VARY | MUSURF_NO_DEFAULT, 0, INFINITY, 0, 1, 0.3)},
     {HEAD(17, "rotation", "Rotation"),
      "Turns the axes of alpha_x, alpha_y or anisotropy counter-clockwise about the normal.",
-     SCALAR("radians", 0, -INFINITY, INFINITY, -3.14159265358979, 3.14159265358979, 0)},
+     SCALAR("radians", MUSURF_MAY_VARY, -INFINITY, INFINITY, -3.14159265358979, 3.14159265358979, 0)},
     {HEAD(18, "anisotropy", "Anisotropy"),
      "Anisotropy by the convention of another system; a value is given by its name.",
      CHOICE("none", anisotropy_choices)},

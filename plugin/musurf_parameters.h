@@ -6,6 +6,7 @@
 
 #include "core/bsdf/musurf.h"
 #include "plugin/musurf_plugin.h"
+#include "plugin/musurf_varying.h"
 
 /* Ids, as in the table. */
 enum {
@@ -51,13 +52,16 @@ enum {
 enum { PARAMETER_COUNT = PARAMETER_END - 1 };
 extern const musurf_param musurf_parameters[PARAMETER_COUNT];
 
-/* What the settings say. With varying, M is a transform that is read from slots at each hit times `inner`. */
+/* What the settings say. With varying, M is made at each hit: a transform that is read from slots times `inner`, or, where more
+ * varies, what `shape` composes. */
 typedef struct parsed {
     mu_definition definition; /* definition.transform is `inner` */
     double inner[4];          /* M, rows; varying: stretch, Eq. (31), times anisotropy */
     int sampler_auto;         /* the sampler is to be measured */
     int varying;
-    uint32_t slot;
+    uint32_t slot; /* of transform */
+    int composed;  /* more varies than transform */
+    musurf_varying shape;
     enum {
         FOOTPRINT_NONE,
         FOOTPRINT_CONSTANT,

@@ -60,8 +60,7 @@ static musurf_result parse_flakes(const given *g, parsed *out) {
                                "belongs to discrete_ggx and discrete_beckmann, but ndf is another");
     const musurf_setting *set = g->by_id[FOOTPRINT];
     if (!set || !mu_is_discrete(d)) return MUSURF_OK;
-    out->footprint_from =
-        COVERS(set, source) && set->source == MUSURF_SLOT ? FOOTPRINT_SLOT : FOOTPRINT_CONSTANT;
+    out->footprint_from = musurf_varies(g, FOOTPRINT) ? FOOTPRINT_SLOT : FOOTPRINT_CONSTANT;
     if (out->footprint_from == FOOTPRINT_SLOT)
         out->footprint_slot = set->slot;
     else

@@ -20,6 +20,7 @@ enum { ELLIPSOID = 7 };
 static int any(const given *g, const uint32_t *ids) {
     for (; *ids; ids++) {
         const musurf_setting *s = g->by_id[*ids];
+        if (musurf_varies(g, *ids)) return (int)*ids;
         if (s && !(*ids == TILT || *ids >= THETA_X || *ids == ROTATION)) return (int)*ids;
         if (s && (s->values[0] != 0 || (*ids == TILT && s->values[1] != 0))) return (int)*ids;
     }
@@ -168,6 +169,7 @@ static void multiply(const double a[4], const double b[4], double out[4]) {
 }
 
 musurf_result musurf_parse_shape(const given *g, parsed *out) {
+    static const uint32_t shaping[] = {STRETCH, ALPHA, ROUGHNESS, ALPHA_X, ALPHA_Y, ROTATION};
     mu_definition *d = &out->definition;
     double m[4] = {1, 0, 0, 1}, transform[4] = {1, 0, 0, 1};
     musurf_result result = parse_alpha(g, d);
@@ -183,16 +185,25 @@ musurf_result musurf_parse_shape(const given *g, parsed *out) {
     double stretch[4], outer[4];
     (void)mu_transform_stretch(musurf_number(g, STRETCH), 0, stretch); /* Eq. (31); singular: M is refused */
     const musurf_setting *set = g->by_id[TRANSFORM];
-    out->varying = set && COVERS(set, source) && set->source == MUSURF_SLOT;
+    out->varying = musurf_varies(g, TRANSFORM);
     if (!out->varying) musurf_numbers(g, TRANSFORM, 4, transform);
+    for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++) out->composed |= musurf_varies(g, shaping[i]);
     multiply(transform, stretch, outer);
-    if (ndf == ELLIPSOID) {
+    if (out->composed) { /* of which `own` is the rightmost factor */
+        static const double identity[4] = {1, 0, 0, 1};
+        memcpy(out->inner, identity, sizeof identity);
+        result = ndf == ELLIPSOID ? parse_ellipsoid(g, d, identity, out->inner) : parse_anisotropy(g, d, out->inner);
+        if (result == MUSURF_OK) result = musurf_varying_parse(g, d, ndf == ELLIPSOID, out->inner, &out->shape);
+        memcpy(m, out->inner, sizeof m);
+        multiply(outer, m, out->inner);
+    } else if (ndf == ELLIPSOID) {
         result = parse_ellipsoid(g, d, outer, out->inner);
     } else {
         result = parse_anisotropy(g, d, m);
         multiply(outer, m, out->inner);
     }
     if (out->varying) out->slot = set->slot; /* what varies is put before `inner`, point by point */
+    out->varying |= out->composed;
     memcpy(d->transform, out->inner, sizeof d->transform);
     return result;
 }

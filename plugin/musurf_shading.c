@@ -22,30 +22,52 @@ __attribute__((noinline)) static void set_footprint(const parsed *p, const float
         mu_footprint_d(&b->closure.d, f);
 }
 
-uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *slots, uint32_t mode,
-                      void *closure) {
+/* transform: M, NULL: the definition's. */
+static inline uint32_t bind(const musurf_material *m, const float wo[3], const float *transform, const float *slots,
+                            uint32_t mode, void *closure) {
     bound *b = closure;
     b->material = m;
-    float transform[4];
-    if (m->parsed.varying) {
-        if (!slots) return 0;
-        const float *t = slots + m->parsed.slot, *inner = m->inner;
-        for (int i = 0; i < 4; i++)
-            transform[i] = t[i / 2 * 2] * inner[i % 2] + t[i / 2 * 2 + 1] * inner[2 + i % 2];
-    }
     if (m->in_float) {
-        if (!mu_bind_f(m->in_float, wo, m->parsed.varying ? transform : NULL, &b->closure.f)) return 0;
+        if (!mu_bind_f(m->in_float, wo, transform, &b->closure.f)) return 0;
         b->closure.f.importance = (mode & MUSURF_IMPORTANCE) != 0;
     } else {
         const double w[3] = {(double)wo[0], (double)wo[1], (double)wo[2]};
-        const double t[4] = {(double)transform[0], (double)transform[1], (double)transform[2],
-                             (double)transform[3]};
-        if (!mu_bind_d(m->in_double, w, m->parsed.varying ? t : NULL, &b->closure.d)) return 0;
+        double t[4] = {1, 0, 0, 1};
+        for (int i = 0; transform && i < 4; i++) t[i] = (double)transform[i];
+        if (!mu_bind_d(m->in_double, w, transform ? t : NULL, &b->closure.d)) return 0;
         b->closure.d.importance = (mode & MUSURF_IMPORTANCE) != 0;
     }
     if (m->parsed.footprint_from) set_footprint(&m->parsed, slots, m->in_float != NULL, b);
     return m->lobes;
 }
+
+/* The M of a material of which some of it varies. */
+static inline void compose(const musurf_material *m, const float *slots, float transform[4]) {
+    if (m->parsed.composed) {
+        musurf_varying_compose(&m->parsed.shape, slots, transform);
+        return;
+    }
+    const float *t = slots + m->parsed.slot, *inner = m->inner;
+    for (int i = 0; i < 4; i++)
+        transform[i] = t[i / 2 * 2] * inner[i % 2] + t[i / 2 * 2 + 1] * inner[2 + i % 2];
+}
+
+uint32_t musurf_setup(const musurf_material *m, const float wo[3], const float *slots, uint32_t mode,
+                      void *closure) {
+    if (!m->parsed.varying) return bind(m, wo, NULL, slots, mode, closure);
+    float transform[4];
+    if (!slots) return 0;
+    compose(m, slots, transform);
+    return bind(m, wo, transform, slots, mode, closure);
+}
+
+static uint32_t map_compose(const musurf_material *m, const float *slots, float transform[4]) {
+    if (!m->parsed.varying) return 0;
+    compose(m, slots, transform);
+    return 1;
+}
+
+const musurf_map musurf_map_table = {sizeof(musurf_map), map_compose, bind};
 
 /* The glossy lobe toward wi, or 0. A mirror has none; a blurred one does. */
 static inline uint32_t glossy_lobe(const bound *b, const float wi[3]) {

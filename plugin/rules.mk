@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The shared objects that hosts load: one exported symbol each, nothing undefined.
-PUBLIC_HEADERS += plugin/musurf_plugin.h plugin/musurf_probe.h
+PUBLIC_HEADERS += plugin/musurf_plugin.h plugin/musurf_probe.h plugin/musurf_map.h
 PLUGIN_LINK = $(CC) -shared $(LDFLAGS) -Wl,--version-script=plugin/export.map $(if $(SANITIZE),,-Wl,-z,defs)
 MODULES += $(BUILD)/musurf_material.so $(BUILD)/template_material.so
 

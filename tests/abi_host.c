@@ -133,6 +133,8 @@ const char *abi_words(const musurf_material_type *type, int index) {
         "ndf=gtr alpha=0.2 gamma=1.3 transform=@2",
         "ndf=discrete_ggx alpha=0.3 transform=1,2,0,1 flakes.density=1e3 flakes.cone=0.1 "
         "footprint=3,4,0.2,0,0,0.1",
+        "ndf=ggx alpha=@4 stretch=0.2",
+        "ndf=std gamma=2.5 alpha_x=@4 alpha_y=@5 rotation=@1 transform=@0",
         "ndf=discrete_beckmann alpha=0.2 transform=@0 footprint=@4",
         "ndf=discrete_ggx alpha=0.2 flakes.density=1e4 footprint=@2",
         NULL};

@@ -24,5 +24,11 @@ _Bool mu_mesh_fill_normals(mu_mesh *mesh, mu_error *error);
 
 /* False, with the reason, unless the file is a whole PLY file. */
 _Bool mu_ply_check(const char *file, mu_error *error);
+/* The property of this name of its vertices: is there one? */
+_Bool mu_ply_has(const char *file, const char *name);
+/* Properties of the vertices of a whole file, by name; columns[k] of *count numbers, to be freed whatever happens, NULL for a
+ * name that is NULL. */
+_Bool mu_ply_vertices(const char *file, const char *const *names, int wanted, double **columns, size_t *count,
+                      mu_error *error);
 
 #endif

@@ -17,6 +17,7 @@
 enum { MOST_ELEMENTS = 16, MOST_PROPERTIES = 64, LONGEST_TOKEN = 64, LONGEST_LIST = 1 << 16 };
 
 typedef struct mu_ply_property {
+    char name[LONGEST_TOKEN];
     char type, count_type; /* of its numbers, and of a list's length: see type_of; count_type 0: no list */
     _Bool indices;         /* a face's corners */
 } mu_ply_property;
@@ -59,6 +60,7 @@ static _Bool add_property(mu_ply *ply, const char *line) {
         if (!property->count_type || strchr("fd", property->count_type)) return 0;
     } else if (sscanf(line, "property %63s %63s", type, name) != 2)
         return 0;
+    snprintf(property->name, sizeof property->name, "%s", name);
     property->type = type_of(type);
     return property->type != 0;
 }
@@ -119,7 +121,11 @@ static _Bool read_binary(const mu_ply *ply, char type, double *out) {
     if (fread(bytes, 1, size, ply->stream) != size) return 0;
     for (size_t i = 0; i < size; ++i)
         bits |= (uint64_t)bytes[ply->format == LITTLE ? i : size - 1 - i] << (8 * i);
-    switch (type) { /* a float's value is not asked for here: assimp reads it, and mesh.c looks at it */
+    union {
+        uint32_t bits;
+        float value;
+    } single = {.bits = (uint32_t)bits};
+    switch (type) {
     case 'b':
         *out = (int8_t)bits;
         break;
@@ -129,8 +135,14 @@ static _Bool read_binary(const mu_ply *ply, char type, double *out) {
     case 'i':
         *out = (int32_t)bits;
         break;
+    case 'f':
+        *out = (double)single.value;
+        break;
+    case 'd':
+        memcpy(out, &bits, sizeof *out);
+        break;
     default:
-        *out = type == 'B' || type == 'S' || type == 'I' ? (double)bits : 0;
+        *out = (double)bits;
     }
     return 1;
 }
@@ -171,4 +183,67 @@ _Bool mu_ply_check(const char *file, mu_error *error) {
     if (ply->stream) fclose(ply->stream);
     free(ply);
     return ok;
+}
+
+/* Reads every value of an item; `columns` of the names that are among its properties. */
+static _Bool read_item(const mu_ply *ply, const mu_ply_element *element, size_t item, const char *const *names, int wanted,
+                       double **columns) {
+    for (const mu_ply_property *p = element->properties; p < element->properties + element->property_count; ++p) {
+        double count = 1, value = 0;
+        if (p->count_type && !read_number(ply, p->count_type, &count)) return 0;
+        for (int i = 0; i < (int)count; ++i)
+            if (!read_number(ply, p->type, &value)) return 0;
+        for (int k = 0; k < wanted && !p->count_type; ++k)
+            if (names[k] && columns[k] && !strcmp(names[k], p->name)) columns[k][item] = value;
+    }
+    return 1;
+}
+
+static const mu_ply_property *find_property(const mu_ply_element *element, const char *name) {
+    for (int i = 0; i < element->property_count; ++i)
+        if (!element->properties[i].count_type && !strcmp(element->properties[i].name, name))
+            return &element->properties[i];
+    return NULL;
+}
+
+_Bool mu_ply_vertices(const char *file, const char *const *names, int wanted, double **columns, size_t *count,
+                      mu_error *error) {
+    mu_ply *ply = calloc(1, sizeof *ply);
+    if (!ply) return mu_fail(error, "%s: not enough memory", file);
+    *ply = (mu_ply){.file = file, .error = error, .stream = fopen(file, "rb")};
+    _Bool ok = ply->stream ? read_header(ply) : mu_fail(error, "%s: %s", file, strerror(errno));
+    int i = 0;
+    for (; ok && i < ply->element_count && strcmp(ply->elements[i].name, "vertex"); ++i)
+        for (size_t item = 0; item < ply->elements[i].count && ok; ++item)
+            ok = read_item(ply, &ply->elements[i], item, names, 0, columns);
+    if (ok && i == ply->element_count) ok = mu_fail(error, "%s: has no vertices", file);
+    const mu_ply_element *const vertex = ok ? &ply->elements[i] : NULL;
+    for (int k = 0; ok && k < wanted; ++k) {
+        if (!names[k]) continue;
+        if (!find_property(vertex, names[k]))
+            ok = mu_fail(error, "%s: its vertices have no property \"%s\"", file, names[k]);
+        else if (!(columns[k] = malloc((size_t)(vertex->count + 1) * sizeof **columns)))
+            ok = mu_fail(error, "%s: not enough memory", file);
+    }
+    for (size_t item = 0; ok && item < vertex->count; ++item)
+        ok = read_item(ply, vertex, item, names, wanted, columns) ||
+             mu_fail(error, "%s: truncated or damaged: vertex %zu cannot be read", file, item);
+    *count = ok ? (size_t)vertex->count : 0;
+    if (ply->stream) fclose(ply->stream);
+    free(ply);
+    return ok;
+}
+
+_Bool mu_ply_has(const char *file, const char *name) {
+    mu_error ignored = {.text = ""};
+    mu_ply *ply = calloc(1, sizeof *ply);
+    if (!ply) return 0;
+    *ply = (mu_ply){.file = file, .error = &ignored, .stream = fopen(file, "rb")};
+    _Bool found = 0;
+    if (ply->stream && read_header(ply))
+        for (int i = 0; i < ply->element_count; ++i)
+            if (!strcmp(ply->elements[i].name, "vertex")) found = find_property(&ply->elements[i], name) != NULL;
+    if (ply->stream) fclose(ply->stream);
+    free(ply);
+    return found;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
-"""Reads single-part scanline OpenEXR files (no compression, ZIPS, ZIP) with numpy and zlib alone.
+"""Reads and writes single-part scanline OpenEXR files (no compression, ZIPS, ZIP) with numpy and zlib alone.
 
 Written from the file format's description, so that what the renderer writes through OpenEXR's library is read by
 something else. read(file) returns (header, channels): attributes by name, float32 or uint32 arrays by channel.
@@ -88,3 +88,24 @@ def read(file):
                 at_block += kind.itemsize * width
     return header, {name: plane if plane.dtype.kind == "u" else plane.astype(numpy.float32)
                     for name, plane in planes.items()}
+
+
+def write(file, channels):
+    """An uncompressed file of float planes, a dict by name, all of one shape."""
+    names = sorted(channels)
+    rows, columns = channels[names[0]].shape
+
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    listed = b"".join(name.encode() + b"\0" + struct.pack("<iIii", 2, 0, 1, 1) for name in names) + b"\0"
+    window = struct.pack("<4i", 0, 0, columns - 1, rows - 1)
+    head = struct.pack("<II", 20000630, 2)
+    head += attribute("channels", "chlist", listed) + attribute("compression", "compression", b"\0")
+    head += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+    head += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+    head += attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
+    head += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+    size = 4 * columns * len(names)
+    offsets = [len(head) + 8 * rows + k * (8 + size) for k in range(rows)]
+    lines = [struct.pack("<ii", k, size) + b"".join(channels[n][k].astype("<f4").tobytes() for n in names) for k in range(rows)]
+    pathlib.Path(file).write_bytes(head + struct.pack(f"<{rows}Q", *offsets) + b"".join(lines))

@@ -45,6 +45,10 @@ NEEDS = {
     "grids": {"objects": [dict(BALL, grid={"material": LAMBERT})]},
     "two_sided": {"objects": [dict(BALL, two_sided=True)]},
     "jacobians": with_material(jacobian={"map": "power_shear", "amount": 2, "exponent": 5}),
+    "textures": with_material(alpha={"texture": "sky.exr"}),
+    "attributes": {"objects": [{"mesh": "square", "material": {"material": "musurf.microfacet", "alpha": {"attribute": "age"}}}],
+                   "meshes": {"square": {"file": "square.ply"}}},
+    "expressions": with_material(alpha={"expression": "0.1 + u*u"}),
     "footprints": with_material(ndf="discrete_ggx"),
     "environment": {"lights": [{"type": "environment", "image": "sky.exr"}]},
     "studio": {"lights": [{"type": "studio"}]},
@@ -67,6 +71,9 @@ class Explain(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="musurf-explain-")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+        (self.folder / "square.ply").write_text(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float age\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 .1\n1 0 0 .2\n0 1 0 .3\n3 0 1 2\n")
         (self.folder / "tile.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
 
     def write(self, change, **more):

@@ -24,7 +24,8 @@ ALLOWED = {
     "core/bsdf/": ("core/bsdf/",),
     "core/surface/": ("core/surface/", "core/bsdf/"),
     "core/tension/": ("core/tension/", "core/bsdf/singular.h"),
-    "core/render/": ("core/render/", "core/surface/", "core/tension/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h"),
+    "core/render/": ("core/render/", "core/surface/", "core/tension/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h",
+                     "plugin/musurf_map.h"),
     "plugin/": ("plugin/", "musurf_plugin.h", "musurf_probe.h", "core/bsdf/"),
     "tests/": ("core/", "plugin/", "tests/"),
 }

@@ -18,7 +18,8 @@ BEYOND_A_SCHEMA = ("not both", "phong has an exponent", "needs both n and k", "i
                    "x_min, x_max, y_min, y_max: the second", "cannot be read as an OpenEXR image", "at least 1e-30 wide",
                    "is no whole number", "belongs to discrete_ggx", "compensated needs", "a random walk", "a tilted mirror",
                    "spline approximates", "the spline of Appendix A",
-                   "spline needs", "spline knows", "bounded is known", "bounded needs")
+                   "spline needs", "spline knows", "bounded is known", "bounded needs", "is no formula", "no such file",
+                   "cannot vary here", "beside a picture only")
 
 
 def valid(schema, value):

@@ -226,7 +226,8 @@ static int render(mu_job *job, uint32_t limit) {
     const mu_tracer tracer = {.scene = &job->scene,
                               .geometry = job->geometry,
                               .lights = job->lights,
-                              .footprints = (mu_features_of(&job->scene) & MU_FEATURE_FOOTPRINTS) != 0};
+                              .footprints = (mu_features_of(&job->scene) &
+                                             (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0};
     const mu_render_plan plan = {.sample = sample,
                                  .context = &tracer,
                                  .scratch = mu_integrator_scratch(&job->scene),

@@ -3,7 +3,7 @@
 /*
  * explain.c: one JSON object with
  *   features, left_out   names from features.h; what each left-out one would have brought
- *   materials            of each: plan, sampler and why, bytes of closure, tables and the whole, lobes, and what it left out
+ *   materials            of each: plan, sampler and why, bytes of closure, tables, textures and the whole, lobes, and what it left out
  *   meshes               of each: vertices, triangles, whether tangents were made and a mesh at rest read
  *   lights               bytes of the sampling table and the image
  *   plugins, libraries   files opened by name; shared objects in the process
@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "core/render/features.h"
+#include "core/render/varying.h"
 
 /* "a, b" as ["a", "b"]. */
 static json_t *split(const char *list) {
@@ -44,11 +45,12 @@ static json_t *material(const mu_named_material *named) {
     for (size_t i = 0; i < sizeof lobes / sizeof *lobes; ++i)
         if (plan->lobes & lobes[i].bit) json_array_append_new(names, json_string(lobes[i].name));
     return json_pack(
-        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:I, s:b, s:o, s:o}", "name", named->name, "material",
+        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:b, s:o, s:o}", "name", named->name, "material",
         named->material.type->id, "plan", plan->name ? plan->name : "", "sampler",
         plan->sampler ? plan->sampler : "", "closure_bytes",
         (json_int_t)plan->closure_bytes, "table_bytes", (json_int_t)plan->table_bytes, "material_bytes",
-        (json_int_t)plan->material_bytes, "slot_floats", (json_int_t)plan->slot_floats, "needs_tangent",
+        (json_int_t)plan->material_bytes, "texture_bytes",
+        (json_int_t)(named->material.varying ? mu_mipmap_bytes(&named->material.varying->mipmap) : 0), "slot_floats", (json_int_t)plan->slot_floats, "needs_tangent",
         (plan->needs & MUSURF_NEEDS_TANGENT) != 0, "lobes", names, "left_out", split(plan->left_out));
 }
 

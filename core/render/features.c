@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* features.c: the feature bits of a scene, from what it contains and what its materials say of themselves. */
 #include "core/render/features.h"
+#include "core/render/varying.h"
 
 static const mu_feature list[MU_FEATURE_COUNT] = {
 #define X(bit, name, brings) {name, brings},
@@ -42,6 +43,11 @@ static uint32_t of_material(const mu_material *material) {
     if (material->plan.table_bytes) bits |= MU_FEATURE_MATERIAL_TABLES;
     if (material->jacobian.map != MU_JACOBIAN_NONE) bits |= MU_FEATURE_JACOBIANS;
     if (material->footprints) bits |= MU_FEATURE_FOOTPRINTS;
+    const mu_varying *varying = material->varying;
+    for (size_t i = 0; varying && i < varying->count; ++i)
+        bits |= mu_source_is_picture(varying->sources + i)                   ? MU_FEATURE_TEXTURES
+                : varying->sources[i].kind == MU_SOURCE_ATTRIBUTE ? MU_FEATURE_ATTRIBUTES
+                                                                  : MU_FEATURE_EXPRESSIONS;
     return bits;
 }
 

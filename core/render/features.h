@@ -22,6 +22,9 @@
     X(GRIDS,                 "grids",                 "a second material chosen by texture coordinates")               \
     X(TWO_SIDED,             "two_sided",             "frames turned over when seen from behind")                      \
     X(JACOBIANS,             "jacobians",             "a transform per hit from the map's Jacobian, in slots")         \
+    X(TEXTURES,              "textures",              "OpenImageIO, and parameters from pictures, averaged over a pixel, in slots")  \
+    X(ATTRIBUTES,            "attributes",            "properties of a mesh file's vertices, and parameters from them, in slots")    \
+    X(EXPRESSIONS,           "expressions",           "parameters from formulas of texture coordinates, in slots")     \
     X(FOOTPRINTS,            "footprints",            "the part of the texture that a pixel covers, per hit, in slots")  \
     X(ENVIRONMENT,           "environment",           "OpenImageIO, the image and its sampling table")                 \
     X(STUDIO,                "studio",                "the studio and its sampling table")                             \

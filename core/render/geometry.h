@@ -21,6 +21,8 @@ typedef struct mu_hit {
     float uv[2];
     mu_vec3 dpdu, dpdv; /* world-space derivatives by texture coordinates; zero if there are no UVs */
     float tension[4]; /* M of the deformation in `frame`, of a mesh that has one (scene.h); else not set */
+    uint32_t primitive;  /* of a mesh: its triangle, and where in it: weights of its second and third corner */
+    float corner[2];
     float distance;
     float error; /* how far p may lie from the surface that rays are tested against, along ng: a bound */
     uint32_t object;

@@ -199,6 +199,8 @@ void mu_hit_fill(const struct mu_geometry *geometry, const mu_ray *ray, const mu
     hit->uv[1] = (float)local.v;
     hit->dpdu = derivative(map, local.dpdu);
     hit->dpdv = derivative(map, local.dpdv);
+    hit->primitive = found->primitive;
+    hit->corner[0] = found->u, hit->corner[1] = found->v;
     hit->distance = found->distance;
     hit->error = (float)error_bound(map, &local, found, p, ng);
     hit->object = found->object;

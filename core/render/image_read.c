@@ -16,6 +16,8 @@
 #define MODULE "musurf_oiio.so"
 
 typedef float *(*mu_reader)(const char *file, int *width, int *height, char *message, size_t size);
+typedef float *(*mu_channel_reader)(const char *file, const char *const *names, int named, int count, int *width,
+                                    int *height, char *message, size_t size);
 typedef double *(*mu_raw_reader)(const char *file, const char *channel, int *width, int *height,
                                  char *message, size_t size);
 
@@ -95,6 +97,20 @@ double *mu_image_read_raw(const char *file, const char *channel, int *width, int
     double *values = NULL;
     *(void **)&reader = find(file, "mu_oiio_read_raw", error);
     if (reader && !(values = reader(file, channel, width, height, why, sizeof why)))
+        mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return values;
+}
+
+float *mu_image_read_channels(const char *file, const char *const *names, _Bool named, int count, int *width,
+                              int *height, mu_error *error) {
+    mu_channel_reader reader;
+    char why[512] = "";
+    sigset_t before;
+    hold_signals(&before);
+    float *values = NULL;
+    *(void **)&reader = find(file, "mu_oiio_read_channels", error);
+    if (reader && !(values = reader(file, names, named, count, width, height, why, sizeof why)))
         mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return values;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/render/info.h"
+#include "core/render/jacobian.h"
 #include "core/render/material_grid.h"
 #include "core/render/material_settings.h"
 
@@ -84,6 +85,11 @@ static json_t *value_schema(const musurf_material_type *type, const char *name) 
     } else {
         json_decref(members);
         schema = plain_schema(p);
+        if (mu_source_serves(p)) {
+            json_t *any = mu_source_schema(p);
+            json_array_insert_new(any, 0, schema);
+            schema = json_pack("{s:o}", "anyOf", any);
+        }
     }
     json_object_set_new(schema, "title", json_string(p->label));
     json_object_set_new(schema, "description",
@@ -115,15 +121,7 @@ json_t *mu_info_schema(const musurf_material_type *type) {
     json_object_set_new(properties, "material", json_pack("{s:s}", "const", type->id));
     const musurf_param *transform = mu_type_find(type, "transform");
     if (transform && transform->kind == MUSURF_MATRIX && (transform->flags & MUSURF_MAY_VARY))
-        json_object_set_new(
-            properties, "jacobian",
-            json_pack("{s:s, s:s, s:{s:{s:[s]}, s:{s:s, s:f, s:f}, s:{s:s, s:f, s:f}}, s:[s, s, s], s:b}",
-                      "type", "object", "description",
-                      "M is the Jacobian of a map of the texture square; power_shear: T(u,v) = (u, v + "
-                      "amount u^exponent)",
-                      "properties", "map", "enum", "power_shear", "amount", "type", "number", "minimum", -1e6,
-                      "maximum", 1e6, "exponent", "type", "number", "minimum", 1.0, "maximum", 1e3,
-                      "required", "map", "amount", "exponent", "additionalProperties", 0));
+        json_object_set_new(properties, "jacobian", mu_jacobian_schema());
     json_object_set_new(schema, "required", json_pack("[s]", "material"));
     json_object_set_new(schema, "title", json_string(type->label));
     json_object_set_new(schema, "description", json_string(type->doc));

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/render/material_settings.h"
+#include "core/render/varying.h"
 
 /* What the plugin says while compiling goes to the place of the parameter it speaks of. */
 typedef struct listener {
@@ -54,20 +54,6 @@ static _Bool describe(mu_material *material, const mu_place *place, mu_error *er
     return 1;
 }
 
-static _Bool read_jacobian(mu_jacobian *jacobian, const mu_place *place, mu_error *error) {
-    static const char *const keys[] = {"map", "amount", "exponent", NULL};
-    static const char *const maps[] = {"power_shear", NULL};
-    if (!mu_place_only(place, keys, error)) return 0;
-    const mu_place map = mu_place_member(place, "map"), amount = mu_place_member(place, "amount"),
-                   exponent = mu_place_member(place, "exponent");
-    size_t which;
-    if (!mu_place_choice(&map, maps, &which, error)) return 0;
-    jacobian->map = MU_JACOBIAN_POWER_SHEAR;
-    /* The Jacobian is handed to shading as floats. Below exponent 1 it would be infinite at u = 0. */
-    return mu_place_number(&amount, -1e6, 1e6, &jacobian->amount, error) &&
-           mu_place_number(&exponent, 1, 1e3, &jacobian->exponent, error);
-}
-
 static const musurf_param *find_varying_transform(const musurf_material_type *type) {
     const musurf_param *p = mu_type_find(type, "transform");
     return p && p->kind == MUSURF_MATRIX && (p->flags & MUSURF_MAY_VARY) ? p : NULL;
@@ -106,7 +92,7 @@ static void read_transform(mu_material *material, const mu_settings *settings) {
     const musurf_param *p = mu_type_find(material->type, "transform");
     if (!p || p->kind != MUSURF_MATRIX) return;
     const musurf_setting *setting = mu_settings_find(settings, p);
-    for (int i = 0; i < 4; i++) material->transform[i] = (float)(setting ? setting->values : p->initial)[i];
+    for (int i = 0; i < 4; i++) material->transform[i] = (float)(setting && setting->values ? setting->values : p->initial)[i];
 }
 
 /* FNV-1a, eight bytes at a time. */
@@ -118,6 +104,15 @@ static uint64_t digest_of(const mu_settings *settings) {
             memcpy(&word, settings->items[i].values + k, sizeof word);
             digest = (digest ^ word) * 0x100000001b3u;
         }
+    for (size_t i = 0; i < settings->source_count; i++) {
+        const mu_mipmap *picture = &settings->sources[i].picture;
+        const size_t count = picture->levels ? picture->level[0].at + picture->level[picture->levels > 1].at : 0;
+        for (size_t k = 0; k < count; k++) {
+            uint32_t word;
+            memcpy(&word, picture->texels + k, sizeof word);
+            digest = (digest ^ word) * 0x100000001b3u;
+        }
+    }
     return digest;
 }
 
@@ -175,9 +170,15 @@ static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_
     material->digest = digest_of(&settings);
     _Bool good = 1;
     material->tension = deforming && find_varying_transform(material->type);
-    if (jacobian.value) good = read_jacobian(&material->jacobian, &jacobian, error);
-    if (jacobian.value || material->tension) good = good && vary_transform(material, &settings, place, error);
+    if (jacobian.value) good = mu_jacobian_read(&material->jacobian, &jacobian, error);
+    /* what composes M of sources puts the rest before it, too */
+    const _Bool composes =
+        settings.source_count && material->type->extension && material->type->extension(MUSURF_MAP_ID);
+    if ((jacobian.value || material->tension) && !composes)
+        good = good && vary_transform(material, &settings, place, error);
     good = good && compile_all(material, &settings, place, error);
+    if (good && settings.source_count)
+        good = (material->varying = mu_varying_make(&settings, material->compiled, place, error)) != NULL;
     mu_settings_free(&settings);
     if (!good) mu_material_free(material);
     return good;
@@ -194,5 +195,6 @@ _Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, con
 
 void mu_material_free(mu_material *material) {
     if (material->compiled) material->type->release(material->compiled);
+    mu_varying_free(material->varying);
     *material = (mu_material){0};
 }

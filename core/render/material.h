@@ -5,12 +5,14 @@
  *
  * "material": "vendor.name" names a type of vendor_material.so, looked for in $MUSURF_PLUGIN_PATH, beside the
  * program, and in ../lib/musurf relative to it. Everything else in the object is a parameter of that table, except
- * the keys that the renderer itself serves ("jacobian"). Warnings of a plugin go to stderr.
+ * the keys that the renderer itself serves ("jacobian"). What may vary may have a source (source.h) instead of a value.
+ * Warnings of a plugin go to stderr.
  */
 #ifndef MU_MATERIAL_H
 #define MU_MATERIAL_H
 
 #include "core/render/document.h"
+#include "core/render/jacobian.h"
 #include "plugin/musurf_plugin.h"
 
 /* Shared objects opened so far; each is opened once, and only when something names it. */
@@ -23,20 +25,18 @@ const musurf_material_type *mu_plugins_type(mu_plugins *plugins, const char *id,
 /* The files opened, for --explain; NULL past the end. */
 const char *mu_plugins_opened(const mu_plugins *plugins, size_t index);
 
-/* A named map T(u,v) of the texture square; its Jacobian at the hit becomes M ("jacobian" in a material). */
-typedef struct mu_jacobian {
-    enum { MU_JACOBIAN_NONE, MU_JACOBIAN_POWER_SHEAR } map; /* T(u,v) = (u, v + amount u^exponent) */
-    double amount, exponent;
-} mu_jacobian;
+/* What the renderer hands to setup: M and the footprint, where it makes them, then values from sources (varying.h). */
+enum { MU_SLOT_TRANSFORM = 0, MU_SLOT_FOOTPRINT = 4, MU_SLOT_VALUES = 10, MU_SLOTS = 26 };
 
-enum { MU_SLOT_TRANSFORM = 0, MU_SLOT_FOOTPRINT = 4, MU_SLOTS = 10 };
+struct mu_varying;
 
 typedef struct mu_material {
     const musurf_material_type *type;
     musurf_material *compiled;
     musurf_plan plan;
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
-    uint64_t digest;      /* of the grids among its settings, which the document may only name */
+    struct mu_varying *varying; /* parameters with sources; NULL: none */
+    uint64_t digest;      /* of grids and pictures among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the others go: M = J T transform */
     _Bool tension;        /* T transform is pushed through slots[0..3] at each hit: T of the mesh's deformation */
     _Bool footprints;     /* the footprint is pushed through slots[4..9] at each hit */

@@ -100,7 +100,7 @@ static _Bool check_members(const musurf_material_type *type, const char *prefix,
     return good;
 }
 
-static void describe_range(const musurf_param *p, char *out, size_t size) {
+void mu_param_range(const musurf_param *p, char *out, size_t size) {
     char low[64] = "", high[64] = "";
     if (isfinite(p->min))
         snprintf(low, sizeof low, p->flags & MUSURF_MIN_EXCLUDED ? "above %.10g" : "at least %.10g", p->min);
@@ -109,15 +109,18 @@ static void describe_range(const musurf_param *p, char *out, size_t size) {
     snprintf(out, size, "%s%s%s", low, low[0] && high[0] ? " and " : "", high);
 }
 
-static _Bool read_number(const musurf_param *p, const mu_place *place, double *out, mu_error *error) {
-    if (!mu_place_number(place, -INFINITY, INFINITY, out, error)) return 0;
-    const double x = *out;
+_Bool mu_param_allows(const musurf_param *p, double x) {
     const _Bool low = p->flags & MUSURF_MIN_EXCLUDED ? x <= p->min : x < p->min;
     const _Bool high = p->flags & MUSURF_MAX_EXCLUDED ? x >= p->max : x > p->max;
-    if (!low && !high) return 1;
+    return !low && !high;
+}
+
+static _Bool read_number(const musurf_param *p, const mu_place *place, double *out, mu_error *error) {
+    if (!mu_place_number(place, -INFINITY, INFINITY, out, error)) return 0;
+    if (mu_param_allows(p, *out)) return 1;
     char range[160];
-    describe_range(p, range, sizeof range);
-    return mu_place_fail(place, error, "is %.10g; it must be %s%s%s", x, range, p->unit[0] ? " " : "",
+    mu_param_range(p, range, sizeof range);
+    return mu_place_fail(place, error, "is %.10g; it must be %s%s%s", *out, range, p->unit[0] ? " " : "",
                          p->unit);
 }
 
@@ -243,11 +246,41 @@ static _Bool read_choice_object(mu_settings *s, const musurf_param *p, const mu_
     return read_members(s, place, p->name, NULL, error);
 }
 
+/* The floats of a new source: after those that the renderer knows by name. */
+static _Bool place_source(const mu_settings *s, mu_source *source, const mu_place *place, mu_error *error) {
+    source->slot = MU_SLOT_VALUES;
+    for (size_t i = 0; i < s->source_count; i++) source->slot += (uint32_t)s->sources[i].count;
+    return source->slot + (uint32_t)source->count <= MU_SLOTS ||
+           mu_place_fail(place, error, "is more than varies at once: %d numbers may", MU_SLOTS - MU_SLOT_VALUES);
+}
+
+/* A source of values in place of one. */
+static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *place, mu_error *error) {
+    mu_source *source = s->sources + s->source_count;
+    if (!mu_source_read(source, p, place, error)) return 0;
+    musurf_setting *setting = mu_settings_add(s, p);
+    if (mu_source_is_constant(source, s->values[s->count - 1])) {
+        mu_source_free(source);
+        return 1;
+    }
+    if (!place_source(s, source, place, error)) {
+        mu_source_free(source);
+        return 0;
+    }
+    s->source_count++;
+    setting->source = MUSURF_SLOT;
+    setting->slot = source->slot;
+    setting->values = NULL;
+    return 1;
+}
+
 static _Bool read_param(mu_settings *s, const musurf_param *p, const mu_place *place, mu_error *error) {
     if (json_is_object(place->value) && p->kind == MUSURF_CHOICE)
         return read_choice_object(s, p, place, error);
     if (json_is_object(place->value) && any_below(s->type, p->name))
         return read_members(s, place, p->name, NULL, error);
+    if (mu_source_serves(p) ? json_is_object(place->value) : mu_source_is(place->value))
+        return read_source(s, p, place, error);
     musurf_setting *setting = mu_settings_add(s, p);
     return read_plain(s, p, place, setting, s->values[s->count - 1], error);
 }
@@ -276,7 +309,8 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
     settings->items = calloc(type->param_count + 1, sizeof *settings->items);
     settings->values = calloc(type->param_count + 1, sizeof *settings->values);
     settings->grids = calloc(type->param_count + 1, sizeof *settings->grids);
-    const _Bool good = settings->items && settings->values && settings->grids
+    settings->sources = calloc(type->param_count + 1, sizeof *settings->sources);
+    const _Bool good = settings->items && settings->values && settings->grids && settings->sources
                            ? read_members(settings, place, "", reserved, error)
                            : mu_place_fail(place, error, "not enough memory");
     if (!good) mu_settings_free(settings);
@@ -285,6 +319,8 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
 
 void mu_settings_free(mu_settings *settings) {
     for (size_t i = 0; settings->grids && i < settings->count; i++) free(settings->grids[i]);
+    for (size_t i = 0; i < settings->source_count; i++) mu_source_free(settings->sources + i);
+    free(settings->sources);
     free(settings->grids);
     free(settings->items);
     free(settings->values);

@@ -5,6 +5,7 @@
 #define MU_MATERIAL_SETTINGS_H
 
 #include "core/render/plugin.h"
+#include "core/render/source.h"
 
 typedef struct mu_settings {
     const musurf_material_type *type;
@@ -12,7 +13,13 @@ typedef struct mu_settings {
     double (*values)[9];   /* items[i].values points to values[i] */
     double **grids;        /* of MUSURF_GRID: items[i].values points to grids[i]; NULL elsewhere */
     size_t count;
+    mu_source *sources; /* of the settings in slots, in the order of these */
+    size_t source_count;
 } mu_settings;
+
+/* Whether a number is in the parameter's range, and that in words. */
+_Bool mu_param_allows(const musurf_param *param, double value);
+void mu_param_range(const musurf_param *param, char *out, size_t size);
 
 /* Reads every member of the object at `place`, except the NULL-terminated `reserved` ones. Text is borrowed
  * from the document. On failure there is nothing to free. */

@@ -239,6 +239,7 @@ void mu_mesh_free(mu_mesh *mesh) {
     free(mesh->tangents);
     free(mesh->tension);
     free(mesh->rest);
+    for (int i = 0; i < MU_ATTRIBUTES; ++i) free(mesh->attributes[i]);
     free(mesh->indices);
     memset(mesh, 0, sizeof *mesh);
 }

@@ -21,6 +21,9 @@ _Bool mu_mesh_read_deformed(mu_mesh *mesh, const char *rest, const char *deforme
                             size_t size, mu_error *error);
 /* Continuous per-vertex tangents: along dp/du where there are UVs, else a smooth field over the surface. */
 _Bool mu_mesh_make_tangents(mu_mesh *mesh, mu_error *error);
+/* A property of the vertices of the mesh's file, which is a PLY, at those of the mesh; free() it. NULL on failure. Vertices
+ * at one place of space and texture must agree in it. */
+float *mu_mesh_attribute(const mu_mesh *mesh, const char *name, mu_error *error);
 void mu_mesh_free(mu_mesh *mesh);
 
 #endif

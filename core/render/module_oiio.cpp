@@ -157,6 +157,45 @@ double *read_raw(const char *file, const char *channel, int *width, int *height,
     return nullptr;
 }
 
+/* `count` channels side by side, whole-number codes as fractions of the largest: those of these names, and if it lacks one, an
+ * error if they were `named` by somebody, else the first. */
+float *read_channels(const char *file, const char *const *names, bool named, int count, int *width, int *height,
+                     char *message, size_t size) {
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);
+    hints.attribute("oiio:RawColor", 1);
+    auto input = open_picture(file, &hints, message, size);
+    if (!input) return nullptr;
+    const OIIO::ImageSpec spec = input->spec();
+    std::vector<int> chosen(count, -1);
+    std::string have, missing;
+    for (int c = 0; c < spec.nchannels; c++) have += (c ? ", " : "") + std::string(spec.channel_name(c));
+    for (int k = 0; names && k < count; k++) {
+        for (int c = 0; c < spec.nchannels; c++)
+            if (spec.channel_name(c) == names[k]) chosen[k] = c;
+        if (chosen[k] < 0 && missing.empty()) missing = names[k];
+    }
+    if (named && !missing.empty()) return refuse(message, size, "has no channel \"" + missing + "\", but " + have);
+    if (!names || !missing.empty()) {
+        if (spec.nchannels < count)
+            return refuse(message, size, "has too few channels, " + have + "; " + std::to_string(count) + " are needed");
+        for (int k = 0; k < count; k++) chosen[k] = k;
+    }
+    const size_t pixels = (size_t)spec.width * (size_t)spec.height;
+    std::vector<float> all(pixels * (size_t)spec.nchannels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) {
+        const std::string why = input->geterror();
+        return refuse(message, size, "is truncated or damaged" + (why.empty() ? "" : ": " + why));
+    }
+    float *values = static_cast<float *>(std::malloc(pixels * (size_t)count * sizeof(float)));
+    if (!values) return refuse(message, size, "not enough memory for its pixels");
+    for (size_t i = 0; i < pixels; i++)
+        for (int k = 0; k < count; k++) values[i * (size_t)count + (size_t)k] = all[i * (size_t)spec.nchannels + (size_t)chosen[k]];
+    *width = spec.width;
+    *height = spec.height;
+    return values;
+}
+
 } // namespace
 
 /* Linear RGB in malloc'ed memory, or NULL and one line in `message`. Not for two threads at once: it turns stderr off. */
@@ -184,4 +223,19 @@ mu_oiio_read_raw(const char *file, const char *channel, int *width, int *height,
         refuse(message, size, "cannot be read as an image");
     }
     return nullptr;
+}
+
+/* Channels of any picture as they are stored, but whole-number codes as fractions of the largest: side by side, in malloc'ed
+ * memory, or NULL and one line in `message`. Not for two threads at once either. */
+extern "C" __attribute__((visibility("default"))) float *
+mu_oiio_read_channels(const char *file, const char *const *names, int named, int count, int *width, int *height,
+                      char *message, size_t size) {
+    try {
+        const Silence silence;
+        return read_channels(file, names, named != 0, count, width, height, message, size);
+    } catch (const std::exception &trouble) {
+        return refuse(message, size, trouble.what());
+    } catch (...) {
+        return refuse(message, size, "cannot be read as an image");
+    }
 }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/render/varying.h"
+
 _Bool mu_query_cache_make(mu_query_cache *cache, mu_error *error) {
     *cache = (mu_query_cache){.plugins = mu_plugins_new()};
     return cache->plugins ? 1 : mu_fail(error, "not enough memory");
@@ -25,6 +27,12 @@ void mu_query_cache_free(mu_query_cache *cache) {
 }
 
 static _Bool find_probe(const mu_material *material, const mu_place *place, mu_probed *out, mu_error *error) {
+    if (material->varying) {
+        const mu_place member = mu_place_member(place, material->varying->sources[0].param->name);
+        return mu_place_fail_key(&member, error,
+                                 "makes the material vary over the surface; here one point is looked at, so write "
+                                 "its value");
+    }
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
         const mu_place jacobian = mu_place_member(place, "jacobian");
         return mu_place_fail_key(&jacobian, error,

@@ -38,7 +38,8 @@ static _Bool read_all(mu_reader *reader) {
     return check_head(reader) && is_table(&reader->materials, reader->error) &&
            is_table(&reader->meshes, reader->error) && mu_read_camera(reader) && mu_read_film(reader) &&
            mu_read_integrator(reader) && mu_check_meshes(reader) && mu_read_objects(reader) &&
-           mu_check_unused_materials(reader) && mu_make_scene_tangents(reader) && mu_read_lights(reader);
+           mu_check_unused_materials(reader) && mu_make_scene_tangents(reader) &&
+           mu_read_attributes(reader) && mu_read_lights(reader);
 }
 
 _Bool mu_scene_read(mu_scene *scene, const char *file, mu_error *error) {

@@ -45,6 +45,8 @@ typedef struct mu_integrator_settings {
     uint64_t seed;
 } mu_integrator_settings;
 
+enum { MU_ATTRIBUTES = 16 };
+
 /* Arrays are NULL where the file has none; tangents are made at load: continuous, xyz and handedness. */
 typedef struct mu_mesh {
     char *name, *file;
@@ -55,6 +57,7 @@ typedef struct mu_mesh {
     float *tangents;  /* 4 each */
     float *tension;   /* 4 each: M of the deformation from the mesh at rest, in the triangles' frames (tension.h) */
     char *rest;       /* the file of that mesh */
+    float *attributes[MU_ATTRIBUTES]; /* 1 each: of the scene's list; NULL where no material asks for it */
     uint32_t *indices;
 } mu_mesh;
 
@@ -107,6 +110,8 @@ typedef struct mu_scene {
     mu_object *objects; /* rectangle lights appear here too, so that rays can hit them */
     mu_light *lights;   /* at most one of environment, constant and studio */
     uint32_t material_count, mesh_count, object_count, light_count;
+    const char *attributes[MU_ATTRIBUTES]; /* names of vertex attributes; of the materials */
+    uint32_t attribute_count;
 } mu_scene;
 
 /* Reads and checks everything, loads meshes, compiles materials. Warnings go to stderr, one line each. */

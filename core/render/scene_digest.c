@@ -48,6 +48,8 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
         digest = add(digest, mesh->normals, mesh->normals ? 3 * sizeof(float) * n : 0);
         digest = add(digest, mesh->uvs, mesh->uvs ? 2 * sizeof(float) * n : 0);
         if (mesh->tension) digest = add(digest, mesh->tension, 4 * sizeof(float) * n);
+        for (int k = 0; k < MU_ATTRIBUTES; ++k)
+            if (mesh->attributes[k]) digest = add(digest, mesh->attributes[k], sizeof(float) * n);
         digest = add(digest, mesh->tangents, mesh->tangents ? 4 * sizeof(float) * n : 0);
     }
     for (uint32_t i = 0; i < scene->light_count; ++i)

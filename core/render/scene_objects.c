@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "core/render/scene_read.h"
+#include "core/render/varying.h"
 
 /* Which shape the object is, from "shape" or "mesh"; checks its keys. */
 static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *object) {
@@ -37,11 +38,15 @@ static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *obj
 static _Bool check_uvs(mu_reader *reader, const mu_place *place, const mu_object *object, uint32_t material,
                        const char *what) {
     const mu_scene *scene = reader->scene;
+    const mu_varying *varying = scene->materials[material].material.varying;
     const _Bool maps = scene->materials[material].material.jacobian.map != MU_JACOBIAN_NONE;
-    if (object->shape != MU_MESH || scene->meshes[object->mesh].uvs || !(what || maps)) return 1;
+    if (maps && !what) what = "its \"jacobian\"";
+    for (size_t i = 0; varying && i < varying->count && !what; i++)
+        if (varying->sources[i].kind != MU_SOURCE_ATTRIBUTE) what = varying->sources[i].param->name;
+    if (object->shape != MU_MESH || scene->meshes[object->mesh].uvs || !what) return 1;
     return mu_place_fail(place, reader->error,
                          "%s needs texture coordinates, which the mesh \"%.60s\" has not",
-                         what ? what : "its \"jacobian\"", scene->meshes[object->mesh].name);
+                         what, scene->meshes[object->mesh].name);
 }
 
 static _Bool is_deformed(const mu_scene *scene, const mu_object *object) {

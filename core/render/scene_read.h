@@ -75,6 +75,9 @@ _Bool mu_check_meshes(mu_reader *reader);
 /* Tangents for those meshes that a material with a direction stands on. */
 _Bool mu_make_scene_tangents(mu_reader *reader);
 
+/* Vertex attributes that materials ask for, of the meshes they stand on; after the tangents, which may split vertices. */
+_Bool mu_read_attributes(mu_reader *reader);
+
 /* A file named in the scene, relative to the scene file; to be freed. NULL without memory. */
 char *mu_scene_path(const mu_reader *reader, const char *name);
 /* "is not known; did you mean ..." for a name that should be a member of the object `table`. */

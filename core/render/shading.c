@@ -3,6 +3,7 @@
 /* shading.c: the frame, the map M and the closure at a hit. World space in, local frame out (see shading.h).
  */
 #include "core/render/shading.h"
+#include "core/render/varying.h"
 
 enum { TRANSMISSION = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION | MUSURF_DIFFUSE_TRANSMISSION };
 
@@ -12,6 +13,32 @@ static mu_frame frame_about(mu_vec3 n, mu_vec3 t) {
     if (!(mu_dot(t, t) > 0.5f)) /* t was along n */
         t = mu_normalise(mu_cross(n, fabsf(n.x) < 0.5f ? mu_v3(1, 0, 0) : mu_v3(0, 1, 0)));
     return (mu_frame){t, mu_cross(n, t), n};
+}
+
+/* Numbers of the scene's list, between the vertices of a triangle; 0 where the mesh has none. Equal ones give that exactly. */
+static void attributes_at(const mu_scene *scene, const mu_hit *hit, float *out) {
+    const mu_object *object = &scene->objects[hit->object];
+    if (object->shape != MU_MESH) return;
+    const mu_mesh *mesh = &scene->meshes[object->mesh];
+    const uint32_t *corner = mesh->indices + 3 * (size_t)hit->primitive;
+    for (uint32_t i = 0; i < scene->attribute_count; i++) {
+        const float *values = mesh->attributes[i];
+        if (!values) continue;
+        const double first = (double)values[corner[0]];
+        out[i] = (float)(first + (double)hit->corner[0] * ((double)values[corner[1]] - first) +
+                         (double)hit->corner[1] * ((double)values[corner[2]] - first));
+    }
+}
+
+/* Parameters that have sources, into slots; true: they come down to an M, which is put into those of "transform". */
+static _Bool values(const mu_scene *scene, const mu_material *material, const mu_hit *hit, mu_vec3 wo,
+                    const mu_beam *beam, float *slots) {
+    float footprint[6] = {hit->uv[0], hit->uv[1], INFINITY, INFINITY, INFINITY, INFINITY};
+    float attributes[MU_ATTRIBUTES] = {0};
+    if (beam && material->varying->pictured) mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
+    if (material->varying->pointwise) attributes_at(scene, hit, attributes);
+    mu_varying_at(material->varying, material->compiled, footprint, attributes, slots, slots + MU_SLOT_TRANSFORM);
+    return material->varying->map != NULL;
 }
 
 void mu_shading_tension(const mu_hit *hit, _Bool turned, const float transform[4], float m[4]) {
@@ -26,17 +53,17 @@ void mu_shading_tension(const mu_hit *hit, _Bool turned, const float transform[4
 
 void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const mu_frame *frame,
                          const float transform[4], float m[4]) {
-    const mu_jacobian *map = &material->jacobian;
     const double p00 = (double)mu_dot(hit->dpdu, frame->t), p01 = (double)mu_dot(hit->dpdv, frame->t);
     const double p10 = (double)mu_dot(hit->dpdu, frame->b), p11 = (double)mu_dot(hit->dpdv, frame->b);
     const double determinant = p00 * p11 - p01 * p10;
-    /* J of T(u,v) = (u, v + amount u^exponent) is [1 0], [slope 1]; so P J P^-1 = I + slope (second column of
-     * P) (first row of P^-1). */
-    double slope = 0;
-    if (map->map == MU_JACOBIAN_POWER_SHEAR && map->amount != 0)
-        slope = map->amount * map->exponent * pow((double)hit->uv[0], map->exponent - 1);
-    const double s = slope / determinant;
-    const double j00 = 1 + s * p01 * p11, j01 = -s * p01 * p01, j10 = s * p11 * p11, j11 = 1 - s * p11 * p01;
+    /* P J P^-1 = 1 + P (J - 1) P^-1, which is 1 exactly where J is */
+    double k[4];
+    mu_jacobian_at(&material->jacobian, (double)hit->uv[0], (double)hit->uv[1], k);
+    for (int i = 0; i < 4; i++) k[i] /= determinant;
+    const double a00 = p00 * k[0] + p01 * k[2], a01 = p00 * k[1] + p01 * k[3];
+    const double a10 = p10 * k[0] + p11 * k[2], a11 = p10 * k[1] + p11 * k[3];
+    const double j00 = 1 + (a00 * p11 - a01 * p10), j01 = a01 * p00 - a00 * p01;
+    const double j10 = a10 * p11 - a11 * p10, j11 = 1 + (a11 * p00 - a10 * p01);
     const float t[4] = {transform[0], transform[1], transform[2], transform[3]};
     for (int column = 0; column < 2; column++) {
         m[column] = (float)(j00 * (double)t[column] + j01 * (double)t[2 + column]);
@@ -70,13 +97,18 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
     }
     const float *slots = NULL;
     const float *transform = material->transform;
+    float *const m = shading->slots + MU_SLOT_TRANSFORM;
+    if (material->varying) {
+        if (values(scene, material, hit, wo, beam, shading->slots)) transform = m;
+        slots = shading->slots;
+    }
     if (material->tension) {
-        mu_shading_tension(hit, turned, transform, shading->slots + MU_SLOT_TRANSFORM);
-        transform = shading->slots + MU_SLOT_TRANSFORM;
+        mu_shading_tension(hit, turned, transform, m);
+        transform = m;
         slots = shading->slots;
     }
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
-        mu_shading_jacobian(material, hit, &shading->frame, transform, shading->slots + MU_SLOT_TRANSFORM);
+        mu_shading_jacobian(material, hit, &shading->frame, transform, m);
         slots = shading->slots;
     }
     if (material->footprints) {
@@ -86,5 +118,7 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
         slots = shading->slots;
     }
     const float direction[3] = {local.x, local.y, local.z};
-    shading->lobes = material->type->setup(material->compiled, direction, slots, 0, closure);
+    const musurf_map *map = material->varying ? material->varying->map : NULL;
+    shading->lobes = map ? map->setup(material->compiled, direction, m, slots, 0, closure)
+                         : material->type->setup(material->compiled, direction, slots, 0, closure);
 }

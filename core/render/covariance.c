@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* covariance.c: M to the covariance of slopes, and back by the symmetric root of its inverse. */
+#include "core/render/covariance.h"
+
+#include <math.h>
+#include <string.h>
+
+void mu_covariance_of(const double m[4], double s[3]) {
+    const double scale = fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3])));
+    const double a = m[0] / scale, c = m[1] / scale, b = m[2] / scale, d = m[3] / scale;
+    const double determinant = (a * d - c * b) * scale, square = determinant * determinant;
+    s[0] = (b * b + d * d) / square, s[1] = -(a * b + c * d) / square, s[2] = (a * a + c * c) / square;
+}
+
+/* The nearest rotation, or mirror: of a 2x2 matrix the polar decomposition in closed form. */
+static void turn_of(const double m[4], double q[4]) {
+    const _Bool mirror = m[0] * m[3] - m[1] * m[2] < 0;
+    const double x = mirror ? m[0] - m[3] : m[0] + m[3], y = mirror ? m[1] + m[2] : m[2] - m[1];
+    const double length = hypot(x, y), c = length > 0 ? x / length : 1, s = length > 0 ? y / length : 0;
+    q[0] = c, q[1] = mirror ? s : -s, q[2] = s, q[3] = mirror ? -c : c;
+}
+
+void mu_covariance_map(const double s[3], const double mean[4], double m[4]) {
+    double of_mean[3], q[4];
+    mu_covariance_of(mean, of_mean);
+    const double near =
+        0x1p-20 * (s[0] + s[2]); /* three numbers rounded by 2^-24 of themselves, and a margin */
+    if (fabs(of_mean[0] - s[0]) <= near && fabs(of_mean[1] - s[1]) <= near &&
+        fabs(of_mean[2] - s[2]) <= near) {
+        memcpy(m, mean, 4 * sizeof *m);
+        return;
+    }
+    turn_of(mean, q);
+    /* S^(-1/2) = (adj S + r) / (r sqrt(tr S + 2 r)), r = sqrt(det S): by Cayley and Hamilton */
+    const double r = sqrt(fmax(s[0] * s[2] - s[1] * s[1], 0)), scale = 1 / (r * sqrt(s[0] + s[2] + 2 * r));
+    const double h[4] = {scale * (s[2] + r), -scale * s[1], -scale * s[1], scale * (s[0] + r)};
+    for (int i = 0; i < 4; i++) m[i] = h[i / 2 * 2] * q[i % 2] + h[i / 2 * 2 + 1] * q[2 + i % 2];
+}

@@ -56,6 +56,19 @@ void sheet_shake(sheet *s, uniform *random, double by) {
     set_uvs(s);
 }
 
+void sheet_bend(double x, double y, double p[3]) {
+    p[0] = x + 0.3 * x * x, p[1] = y + 0.2 * sin(2 * x), p[2] = 0.25 * sin(3 * x) * cos(2 * y);
+}
+
+/* The Cholesky factor of J^T J. */
+void sheet_bend_map(double x, double y, double m[4]) {
+    const double px[3] = {1 + 0.6 * x, 0.4 * cos(2 * x), 0.75 * cos(3 * x) * cos(2 * y)},
+                 py[3] = {0, 1, -0.5 * sin(3 * x) * sin(2 * y)};
+    double xx = 0, xy = 0, yy = 0;
+    for (int k = 0; k < 3; k++) xx += px[k] * px[k], xy += px[k] * py[k], yy += py[k] * py[k];
+    m[0] = sqrt(xx), m[1] = xy / m[0], m[2] = 0, m[3] = sqrt(yy - m[1] * m[1]);
+}
+
 mu_tension *sheet_tension(const sheet *s) {
     const mu_tension_input input = {s->vertices, s->triangles, s->corner, s->rest, s->deformed, s->uv, s->uv};
     mu_tension *tension = mu_tension_make(&input);

@@ -18,6 +18,9 @@ typedef struct sheet {
 sheet sheet_make(uint32_t across, uint32_t up);
 /* Moves all vertices at random by up to `by` of a cell, texture too, and cuts cells either way. */
 void sheet_shake(sheet *s, uniform *random, double by);
+/* Where the point (x, y) of a smoothly bent sheet is, and the exact M of that deformation with u along x. */
+void sheet_bend(double x, double y, double p[3]);
+void sheet_bend_map(double x, double y, double m[4]);
 mu_tension *sheet_tension(const sheet *s);
 void sheet_free(sheet *s);
 

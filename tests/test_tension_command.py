@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 import numpy as np
 
 from command import musurf, strict
+from tension_reference import reference
 
 
 def sheet(n):
@@ -33,36 +34,6 @@ def sheet(n):
 def bend(p):
     x, y = p.T
     return np.stack([x + 0.3 * x * x, y + 0.2 * np.sin(2 * x + y), 0.4 * np.sin(3 * x) * np.cos(2 * y)], 1)
-
-
-def frame(p, uv):
-    """Edges of a triangle as columns of a matrix, in the frame of dp/du and the winding's normal."""
-    edges, parameters = (p[1:] - p[0]).T, (uv[1:] - uv[0]).T
-    t = edges @ np.linalg.inv(parameters)[:, 0]
-    t /= np.linalg.norm(t)
-    n = np.cross(edges[:, 0], edges[:, 1])
-    return np.stack([t, np.cross(n / np.linalg.norm(n), t)]) @ edges
-
-
-def power(symmetric, function):
-    values, vectors = np.linalg.eigh(symmetric)
-    return vectors @ np.diag(function(values)) @ vectors.T
-
-
-def reference(rest, deformed, uv, faces):
-    """M of faces, and of vertices of one chart, by eigenvectors and numpy's Cholesky."""
-    of_faces, sums, weights = [], np.zeros((len(rest), 2, 2)), np.zeros(len(rest))
-    for face in faces:
-        r, d = frame(rest[face], uv[face]), frame(deformed[face], uv[face])
-        m = d @ np.linalg.inv(r)
-        of_faces.append(m)
-        for k in range(3):
-            a, b = (rest[face[(k + i) % 3]] - rest[face[k]] for i in (1, 2))
-            angle = math.acos(a @ b / np.linalg.norm(a) / np.linalg.norm(b))
-            weight = angle * np.linalg.norm(np.cross(a, b))
-            sums[face[k]] += weight * power(m.T @ m, np.log)
-            weights[face[k]] += weight
-    return np.array(of_faces), np.array([np.linalg.cholesky(power(s / w, np.exp)).T for s, w in zip(sums, weights)])
 
 
 def obj(positions, uv, faces, extra=""):
@@ -184,13 +155,14 @@ class Tension(unittest.TestCase):
                 "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 2/8 5/5 6/6\nf 2/8 6/6 3/7\n")
 
     def test_seams(self):
-        """Left of the seam nothing is stretched, right of it u by 2: each chart has its own M, in JSON and PLY."""
+        """Left of the seam nothing is stretched, right of it u by 2. At the seam both charts see the mean of the logarithms, by
+        area and angle, in JSON and PLY: on the left two triangles of angles 45 degrees meet its ends, on the right, too."""
         output = self.folder / "out.ply"
         found = self.ask(self.put("a.obj", self.roof(0)), self.put("b.obj", self.roof(1)), "-o", output)
-        self.assertEqual(found["vertices"][:4], [[1, 0, 0, 1]] * 4)
-        self.assertEqual(found["vertices"][4:], [[2, 0, 0, 1]] * 2)
-        self.assertEqual(found["seams"], [{"vertex": 1, "uv": [4, 5], "m": [2, 0, 0, 1]},
-                                          {"vertex": 2, "uv": [4, 6], "m": [2, 0, 0, 1]}])
+        middle = math.sqrt(2)
+        np.testing.assert_allclose(found["vertices"], [[x, 0, 0, 1] for x in (1, middle, middle, 1, 2, 2)], atol=1e-14)
+        self.assertEqual([(seam["vertex"], seam["uv"]) for seam in found["seams"]], [(1, [4, 5]), (2, [4, 6])])
+        np.testing.assert_allclose([seam["m"] for seam in found["seams"]], [[middle, 0, 0, 1]] * 2, atol=1e-14)
         head, _, data = output.read_bytes().partition(b"end_header\n")
         names = re.findall(rb"property double (\w+)", head)
         self.assertEqual(names, [b"x", b"y", b"z", b"s", b"t", b"m00", b"m01", b"m10", b"m11"])
@@ -198,7 +170,7 @@ class Tension(unittest.TestCase):
         rows = np.frombuffer(data, [("n", "u1"), ("v", "<i4", 3)], offset=8 * 8 * 9)
         self.assertEqual(rows["v"].tolist(), [[0, 1, 2], [0, 2, 3], [6, 4, 5], [6, 5, 7]])
         self.assertEqual(vertices[:, 0].tolist(), [0, 1, 1, 0, 3, 3, 1, 1])
-        self.assertEqual(vertices[:, 5].tolist(), [1, 1, 1, 1, 2, 2, 2, 2])
+        np.testing.assert_allclose(vertices[:, 5], [1, middle, middle, 1, 2, 2, middle, middle], atol=1e-14)
         self.assertEqual(vertices[6:, 3:5].tolist(), [[4, 5], [4, 6]])
         again = self.ask(output, output)  # it is a mesh that this program reads
         self.assertEqual(again["summary"]["vertices"], 8)
@@ -262,8 +234,9 @@ class Tension(unittest.TestCase):
         wide = [(2 * x, y, z) for x, y, z in points]
         found = self.ask(self.put("a.obj", obj(points, folded, faces)), self.put("b.obj", obj(wide, folded, faces)))
         self.assertEqual(found["faces"], [[2, 0, 0, 1], [1, 0, 0, 2]])
-        self.assertEqual(found["vertices"], [[2, 0, 0, 1]] * 3 + [[1, 0, 0, 2]])
-        self.assertEqual(found["seams"], [{"vertex": 2, "uv": [0, 1], "m": [1, 0, 0, 2]}, {"vertex": 1, "uv": [1, 0], "m": [1, 0, 0, 2]}])
+        np.testing.assert_allclose(found["vertices"], [[2, 0, 0, 1]] * 3 + [[1, 0, 0, 2]], atol=1e-14)
+        self.assertEqual([(seam["vertex"], seam["uv"]) for seam in found["seams"]], [(2, [0, 1]), (1, [1, 0])])
+        np.testing.assert_allclose([seam["m"] for seam in found["seams"]], [[1, 0, 0, 2]] * 2, atol=1e-14)
 
     def test_folds_are_counted(self):
         """One vertex of a fine sheet pushed across its neighbours turns some of its triangles over."""

@@ -28,9 +28,10 @@ static const mu_usage usage = {
     options,
     "Both files need the same vertices and faces in the same order; texture coordinates may differ, or be "
     "missing in\n"
-    "one. Vertices have the mean of their faces (of log sqrt(M^T M), weighted by area and angle at rest), "
-    "one for each\n"
-    "chart of the texture. Rigid motions give M = 1.\n"
+    "one. Vertices have the mean of their faces (of log sqrt(M^T M), weighted by area and angle at rest), moved "
+    "to what a\n"
+    "quadratic through the vertices around says: one for each chart of the texture, of one deformation. Rigid "
+    "motions\ngive M = 1.\n"
     "out, one line of JSON:\n"
     "  \"summary\"   numbers of \"faces\", \"triangles\", \"vertices\", \"seams\"; least and largest "
     "\"stretch\" and "

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * tension.c: M of all triangles, and the means at the points where they meet.
+ * tension.c: M of all triangles, the places and points where they meet, and what is left once all points have their M.
  *
  * A triangle counts as inverted if its normal agrees with the normals around it at rest, and opposes them deformed; those
  * are sums over the triangles at its three corners, weighted by angle. Its own M is measured on its own side either way.
@@ -14,25 +14,22 @@
 
 #include "core/tension/face.h"
 #include "core/tension/index.h"
+#include "core/tension/points.h"
 #include "core/tension/stretch.h"
 
 /* Below this, the cosine to the normals around says nothing: sheets with two sides back to back. */
 #define MU_SIDE 1e-3
 
-typedef struct mu_sum { /* of a point */
-    mu_stretch_log log;
-    double weight;
-    _Bool differ; /* not all have the first one's M: else the mean is that, exactly */
-} mu_sum;
-
 typedef struct mu_build {
     const mu_tension_input *in;
     mu_tension *out;
-    uint32_t *place; /* per vertex */
-    double *normals; /* per place: rest, deformed */
-    mu_sum *sums;    /* per point */
-    mu_index places, points;
-    uint32_t room; /* of points and sums */
+    uint32_t *place;  /* per vertex */
+    uint32_t *latest; /* per place: the point that a corner was last found to be */
+    double *normals;  /* per place: rest, deformed */
+    mu_part *part;
+    mu_chart_point *points;
+    mu_index places, indexed;
+    uint32_t room; /* of points */
 } mu_build;
 
 static _Bool number_places(mu_build *b) {
@@ -53,22 +50,33 @@ static _Bool grow(mu_build *b) {
     const uint32_t room = b->room < UINT32_MAX / 2 ? 2 * b->room + 64 : UINT32_MAX;
     mu_tension_point *points = realloc(b->out->point, room * sizeof *points);
     if (points) b->out->point = points;
-    mu_sum *sums = realloc(b->sums, room * sizeof *sums);
-    if (sums) b->sums = sums;
+    mu_chart_point *more = realloc(b->points, room * sizeof *more);
+    if (more) b->points = more;
     b->room = room;
-    return points && sums;
+    return points && more;
+}
+
+/* Whether the corner has the point's chart and texture coordinates; false also where these are not numbers. */
+static _Bool is_same(const mu_build *b, uint32_t point, size_t corner, int chart) {
+    const double *const uvs[2] = {b->in->rest_uv, b->in->deformed_uv};
+    const size_t first = b->points[point].corner;
+    for (size_t k = 0; k < 4; k++)
+        if (uvs[k / 2] && uvs[k / 2][2 * first + k % 2] != uvs[k / 2][2 * corner + k % 2]) return 0;
+    return b->points[point].chart == chart;
 }
 
 static _Bool point_of(mu_build *b, uint32_t triangle, size_t corner, int chart, uint32_t *number) {
     const size_t at = 3 * (size_t)triangle + corner;
     const uint32_t vertex = b->in->corner[at];
     const double *const uvs[2] = {b->in->rest_uv, b->in->deformed_uv};
+    uint32_t *latest = &b->latest[b->place[vertex]];
+    if (*latest != MU_NO_POINT && is_same(b, *latest, at, chart)) return *number = *latest, 1; /* most are */
     uint64_t key[5] = {(uint64_t)b->place[vertex] << 4 | (uint64_t)chart};
     for (size_t k = 0; k < 4; k++) key[1 + k] = mu_index_word(uvs[k / 2] ? uvs[k / 2][2 * at + k % 2] : 0);
-    *number = mu_index_of(&b->points, key);
+    *latest = *number = mu_index_of(&b->indexed, key);
     if (*number < b->out->points) return 1;
     if (b->out->points == b->room && !grow(b)) return 0;
-    b->sums[*number] = (mu_sum){.weight = 0};
+    b->points[*number] = (mu_chart_point){.corner = (uint32_t)at, .chart = chart};
     b->out->point[*number] = (mu_tension_point){.vertex = vertex, .triangle = triangle, .m = {1, 0, 0, 1}};
     b->out->points++;
     return 1;
@@ -84,40 +92,28 @@ static void add_normals(mu_build *b, const uint32_t *corner, const mu_tension_fa
     }
 }
 
-/* `m` holds the first one's M meanwhile. */
-static void add_to_sum(mu_sum *sum, double m[4], const double added[4], double weight) {
-    const mu_stretch_log log = mu_stretch_log_of(added);
-    if (!(sum->weight > 0)) memcpy(m, added, 4 * sizeof *m);
-    for (int k = 0; k < 4; k++) sum->differ |= m[k] != added[k];
-    sum->log.xx += weight * log.xx, sum->log.xy += weight * log.xy, sum->log.yy += weight * log.yy;
-    sum->log.turn_x += weight * log.turn_x, sum->log.turn_y += weight * log.turn_y;
-    sum->weight += weight;
+/* A triangle without M weighs nothing. */
+static mu_part part_of(const mu_tension_face *face) {
+    mu_part part = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    if (!face->usable) return part;
+    const mu_stretch_log log = mu_stretch_log_of(face->m);
+    part.log[0] = log.xx, part.log[1] = log.xy, part.log[2] = log.yy;
+    memcpy(part.weight, face->weight, sizeof part.weight);
+    memcpy(part.n, face->rest_n, sizeof part.n);
+    memcpy(part.t, face->rest_t, sizeof part.t);
+    return part;
 }
 
-static _Bool sum_up(mu_build *b) {
+static _Bool make_faces(mu_build *b) {
     mu_tension *out = b->out;
     for (uint32_t t = 0; t < b->in->triangles; t++) {
         const mu_tension_face face = mu_tension_face_of(b->in, t, &out->counts);
-        uint32_t *point = out->corner + 3 * (size_t)t;
         add_normals(b, b->in->corner + 3 * (size_t)t, &face);
+        b->part[t] = part_of(&face);
         for (size_t k = 0; k < 3; k++)
-            if (!point_of(b, t, k, face.chart, &point[k])) return 0;
-        if (!face.usable) continue;
-        memcpy(out->face + 4 * (size_t)t, face.m, sizeof face.m);
-        for (size_t k = 0; k < 3; k++)
-            add_to_sum(&b->sums[point[k]], out->point[point[k]].m, face.m, face.weight[k]);
+            if (!point_of(b, t, k, face.chart, out->corner + 3 * (size_t)t + k)) return 0;
+        if (face.usable) memcpy(out->face + 4 * (size_t)t, face.m, sizeof face.m);
     }
-    return 1;
-}
-
-/* The mean; false if there is nothing to take it of, which leaves M. */
-static _Bool mean(const mu_sum *sum, double m[4]) {
-    if (!(sum->weight > 0)) return 0;
-    if (!sum->differ) return 1;
-    const double w = sum->weight;
-    const mu_stretch_log log = {sum->log.xx / w, sum->log.xy / w, sum->log.yy / w, sum->log.turn_x / w,
-                                sum->log.turn_y / w};
-    mu_stretch_matrix(&log, m);
     return 1;
 }
 
@@ -129,32 +125,42 @@ static int side(const mu_build *b, const uint32_t *corner, const double n[3], si
     return fabs(along) > MU_SIDE * sqrt(length) ? (along > 0) - (along < 0) : 0;
 }
 
-/* What is left once all sums are complete: triangles without M of their own, and those turned over. */
-static void finish_faces(mu_build *b) {
-    mu_tension_counts ignored = {0};
-    for (uint32_t t = 0; t < b->in->triangles; t++) {
-        const mu_tension_face face = mu_tension_face_of(b->in, t, &ignored);
-        const uint32_t *corner = b->in->corner + 3 * (size_t)t, *point = b->out->corner + 3 * (size_t)t;
-        double *m = b->out->face + 4 * (size_t)t;
-        if (face.usable) {
-            b->out->counts.inverted +=
-                side(b, corner, face.rest_n, 0) > 0 && side(b, corner, face.deformed_n, 3) < 0;
-            continue;
-        }
-        mu_sum all = {.weight = 0};
-        m[0] = m[3] = 1;
-        for (size_t k = 0; k < 3; k++) {
-            if (!(b->sums[point[k]].weight > 0)) continue;
-            add_to_sum(&all, m, b->out->point[point[k]].m, 1);
-        }
-        mean(&all, m);
+/* The mean of the points that have an M. */
+static void mean_of_corners(const mu_build *b, const uint32_t *point, double m[4]) {
+    mu_stretch_log sum = {0, 0, 0, 0, 0};
+    const double *first = NULL;
+    _Bool differ = 0;
+    double count = 0;
+    m[0] = m[3] = 1, m[1] = m[2] = 0;
+    for (size_t k = 0; k < 3; k++) {
+        if (!b->points[point[k]].has_m) continue;
+        const double *own = b->out->point[point[k]].m;
+        const mu_stretch_log log = mu_stretch_log_of(own);
+        sum.xx += log.xx, sum.xy += log.xy, sum.yy += log.yy, sum.turn_x += log.turn_x,
+            sum.turn_y += log.turn_y;
+        differ |= first && memcmp(first, own, 4 * sizeof *own);
+        first = first ? first : own, count++;
     }
+    if (!first) return;
+    sum.xx /= count, sum.xy /= count, sum.yy /= count;
+    if (differ)
+        mu_stretch_matrix(&sum, m);
+    else
+        memcpy(m, first, 4 * sizeof *m);
 }
 
-static void finish_points(mu_build *b) {
-    mu_tension *out = b->out;
-    for (uint32_t p = 0; p < out->points; p++)
-        if (!mean(&b->sums[p], out->point[p].m)) out->counts.points_without++;
+/* Triangles without M of their own, and those turned over. */
+static void finish_faces(mu_build *b) {
+    for (uint32_t t = 0; t < b->in->triangles; t++) {
+        const uint32_t *corner = b->in->corner + 3 * (size_t)t;
+        mu_shape deformed;
+        if (!(b->part[t].weight[0] > 0))
+            mean_of_corners(b, b->out->corner + 3 * (size_t)t, b->out->face + 4 * (size_t)t);
+        else if (mu_tension_shape(b->in, b->in->deformed, t, &deformed))
+            b->out->counts.inverted +=
+                side(b, corner, b->part[t].n, 0) > 0 && side(b, corner, deformed.n, 3) < 0;
+    }
+    for (uint32_t p = 0; p < b->out->points; p++) b->out->counts.points_without += !b->points[p].has_m;
 }
 
 /* The first point at each vertex' place. */
@@ -172,6 +178,15 @@ static _Bool finish_vertices(mu_build *b) {
     return 1;
 }
 
+static _Bool make_points(mu_build *b) {
+    mu_ground ground = {
+        .in = b->in, .tension = b->out, .place = b->place, .part = b->part, .places = b->places.count};
+    mu_index_free(&b->indexed); /* large, and not needed any more */
+    const _Bool good = mu_ground_make(&ground) && mu_points_finish(&ground, b->normals, b->points, b->out);
+    mu_ground_free(&ground);
+    return good;
+}
+
 static _Bool build(mu_build *b) {
     mu_tension *out = b->out;
     const size_t triangles = b->in->triangles, vertices = b->in->vertices;
@@ -179,12 +194,15 @@ static _Bool build(mu_build *b) {
     out->corner = calloc(3 * triangles + 1, sizeof *out->corner);
     out->vertex = calloc(vertices + 1, sizeof *out->vertex);
     b->place = malloc((vertices + 1) * sizeof *b->place);
-    if (!out->face || !out->corner || !out->vertex || !b->place || !number_places(b)) return 0;
+    b->part = malloc((triangles + 1) * sizeof *b->part);
+    if (!out->face || !out->corner || !out->vertex || !b->place || !b->part || !number_places(b)) return 0;
     b->normals = calloc(6 * (size_t)b->places.count + 1, sizeof *b->normals);
-    if (!b->normals || triangles > UINT32_MAX / 3 || !mu_index_make(&b->points, 5, (uint32_t)(3 * triangles)))
+    b->latest = malloc(((size_t)b->places.count + 1) * sizeof *b->latest);
+    if (b->latest) memset(b->latest, 0xff, ((size_t)b->places.count + 1) * sizeof *b->latest);
+    if (!b->normals || !b->latest || triangles > UINT32_MAX / 3 ||
+        !mu_index_make(&b->indexed, 5, (uint32_t)(3 * triangles)))
         return 0;
-    if (!sum_up(b)) return 0;
-    finish_points(b);
+    if (!make_faces(b) || !make_points(b)) return 0;
     finish_faces(b);
     return finish_vertices(b);
 }
@@ -197,10 +215,12 @@ mu_tension *mu_tension_make(const mu_tension_input *input) {
         b.out = NULL;
     }
     mu_index_free(&b.places);
-    mu_index_free(&b.points);
+    mu_index_free(&b.indexed);
     free(b.place);
+    free(b.latest);
     free(b.normals);
-    free(b.sums);
+    free(b.part);
+    free(b.points);
     return b.out;
 }
 

@@ -14,12 +14,15 @@
  * projection of the mesh's +x axis at rest onto the triangle (+y where that is all but nothing), carried along.
  *
  * Continuous M: all corners at one place (same position at rest and deformed), with the same texture coordinates
- * and handedness, are one point of a chart. It has the mean of the triangles that meet there in the space of
- * stretch.h, weighted by area and angle of the corner, both at rest. Between the points of a triangle M is
- * interpolated linearly (mu_tension_mix): triangular matrices with positive diagonals stay so, hence invertible.
+ * and handedness, are one point of a chart. All points of a place see one deformation, whatever the seams of the texture
+ * (site.h): the mean of log U = log(M^T M) / 2 over the triangles that meet there, weighted by area and angle at
+ * rest (stretch.h says why), moved to that of a polynomial through the vertices around (quadric.h). Each point
+ * expresses it along its own u (direction.h). Between the points of a triangle M is interpolated linearly
+ * (mu_tension_mix): triangular matrices with positive diagonals stay so, hence invertible.
  *
- * Accuracy: on a smooth deformation a triangle's M is that of its middle to first order in its size, and so is a mean over
- * triangles that lie around a point unevenly; evenly, as in a regular grid, to second order.
+ * Accuracy: on a smooth deformation a triangle's M is that of its middle to first order in its size; a point's M is
+ * of second order, also at borders and wherever the vertices lie. Where textures of the two meshes differ, the turn
+ * between them is a mean: of first order, but for even meshes.
  *
  * Deterministic: sums run in the order of the triangles. A mesh may be read by several threads.
  */

@@ -63,9 +63,11 @@ demo: deps
 INSTALL ?= install
 install: all
 	$(INSTALL) -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/musurf $(DESTDIR)$(PREFIX)/lib/pkgconfig \
-	              $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	              $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf $(DESTDIR)$(PREFIX)/share/musurf/scenes \
+	              $(DESTDIR)$(PREFIX)/lib/musurf/mitsuba/musurf_mitsuba
 	$(INSTALL) -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
 	$(INSTALL) -m 755 $(MODULES) $(DESTDIR)$(PREFIX)/lib/musurf
+	$(INSTALL) -m 644 $(MITSUBA_PACKAGE) $(DESTDIR)$(PREFIX)/lib/musurf/mitsuba/musurf_mitsuba
 	$(INSTALL) -m 644 $(BUILD)/libmusurf.a $(BUILD)/libmusurf_render.a $(DESTDIR)$(PREFIX)/lib
 	$(INSTALL) -m 755 $(BUILD)/libmusurf.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib
 	ln -sf libmusurf.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/libmusurf.so.$(SOMAJOR)
@@ -103,6 +105,7 @@ help:
 	@echo 'make report     all of these and the full cross-check, measured and on one page, with what is claimed on top; QUICK=1'
 	@echo 'make tables     measure the accuracy and speed tables of the README again'
 	@echo 'make stability  measure errors over stiff and extreme cases, in float and double, into $(BUILD)/stability/'
+	@echo 'make mitsuba    Mitsuba 3 into $(BUILD)/mitsuba (some 400 MB); then make test-mitsuba: musurf inside it, in full'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'
 	@echo 'make install    PREFIX=/usr/local DESTDIR= ; also: uninstall'
 	@echo 'make clean      remove what was built; distclean removes $(BUILD)/ with the virtual environment'

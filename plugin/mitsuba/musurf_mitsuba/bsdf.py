@@ -127,7 +127,7 @@ def make(mi):
                     raise
             except ERRORS as why:
                 for name in self.edits:
-                    self.edits[name].assign(self.as_edit(self.given.table.by_name[name]))
+                    mi.set_property(self.edits[name], self.as_edit(self.given.table.by_name[name]))
                 refuse(mi, f"musurf: {why}; the material stays as it was")
 
         def to_string(self):
@@ -140,9 +140,12 @@ def make(mi):
             """Once, with the first hits: a mesh without texture coordinates has tangents that nobody chose."""
             self.tangents_checked = True
             found = dr.reinterpret_array(mi.UInt32, si.shape).numpy()
+            # si.shape[i] may come as a mere Shape, whose parameters tell what it is
             for index in np.unique(found, return_index=True)[1]:
                 shape = si.shape[int(index)]
-                if isinstance(shape, mi.Mesh) and not shape.has_vertex_texcoords():
+                if shape is None or not shape.is_mesh():
+                    continue
+                if len(mi.traverse(shape).get("vertex_texcoords", ())) == 0:
                     self.warn_once(f"{self.given.table.type_id}: shading depends on the tangent, and shape \"{shape.id()}\" has no texture "
                                    "coordinates to take it from: directions on it are arbitrary")
 

@@ -8,12 +8,14 @@ that has several numbers, each may be given by itself ("transform_0"), as a numb
 import difflib
 import re
 
+import drjit as dr
 import numpy as np
 
 from . import abi, material_file
 from .table import Table
 
 OWN = ("material", "file", "plugin")
+UNIFORM = ("UniformSpectrum", "SRGBReflectanceSpectrum")  # is_spatially_varying() says the same of mesh attributes, which do vary
 
 
 class PropertyError(Exception):
@@ -100,7 +102,7 @@ class Properties:
         textured = self.is_texture(value)
         if isinstance(value, self.mi.Object) and not textured:
             raise PropertyError(f"{p.key}: takes numbers, a word or a texture, not a {type(value).__name__}")
-        if textured and not value.is_spatially_varying():
+        if textured and value.class_name() in UNIFORM:
             value, textured = self.constant(p, value), False
         if textured and not p.may_vary:
             able = ", ".join(q.key for q in self.table.parameters if q.may_vary)
@@ -118,7 +120,7 @@ class Properties:
             self.values[p.name] = value_of(p, value, p.count)
 
     def constant(self, p, texture):
-        si = self.mi.SurfaceInteraction3f()
+        si = dr.zeros(self.mi.SurfaceInteraction3f, 1)
         found = texture.eval(si) if p.kind == abi.COLOR else texture.eval_1(si)
         return [float(np.ravel(np.array(x))[0]) for x in found] if p.kind == abi.COLOR else float(np.ravel(np.array(found))[0])
 

@@ -77,5 +77,5 @@ class Table:
         if key in self.by_key:
             return self.by_key[key]
         near = difflib.get_close_matches(key, self.by_key, n=1)
-        hint = f"; did you mean \"{near[0]}\"?" if near else ""
+        hint = f"; did you mean \"{near[0]}\"?" if near else f"; it has {', '.join(p.key for p in self.parameters)}"
         raise KeyError(f"{self.type_id} has no parameter \"{key}\"{hint}")

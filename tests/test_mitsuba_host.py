@@ -183,6 +183,14 @@ class Host(unittest.TestCase):
             self.agree(f[:, i], one[:, 0], 1e-4)
             self.agree(pdf[i], one_pdf[0], 1e-4)
 
+    def test_roughness_per_point(self):
+        wo, wi = directions(2, 22), directions(2, 23)
+        alphas = np.array([[[0.1], [0.5]]], dtype=np.float32)
+        f, _ = values(load(ndf="ggx", sampler="visible", alpha={"type": "bitmap", "data": mi.TensorXf(alphas), "raw": True, "filter_type": "nearest"}),
+                      wo, wi, uv=([0.25, 0.75], [0.5, 0.5]))
+        for i, alpha in enumerate(alphas.ravel()):
+            self.agree(f[:, i], values(load(ndf="ggx", alpha=float(alpha)), wo[:, i:i + 1], wi[:, i:i + 1])[0][:, 0], 1e-4)
+
     def test_a_color_per_point_of_another_plugin(self):
         wo, wi = directions(2, 14), directions(2, 15)
         colors = np.array([[[0.1, 0.2, 0.3], [0.9, 0.5, 0.7]]], dtype=np.float32)

@@ -66,7 +66,8 @@ class Messages(unittest.TestCase):
 
     def test_what_the_host_cannot_feed(self):
         checkers = {"type": "checkerboard"}
-        self.musurf("alpha: cannot be textured: musurf.microfacet takes it once for the whole surface; what may vary: transform", alpha=checkers)
+        self.musurf("gamma: cannot be textured: musurf.microfacet takes it once for the whole surface; what may vary: ", ndf="gtr", gamma=checkers)
+        self.musurf("musurf.microfacet: alpha: ", ndf="phong", alpha=checkers)  # may vary, but not in this material: the plugin says why
         self.musurf("transform: has 4 numbers, and a texture gives one: texture transform_0,", transform=checkers)
         HEARD.clear()
         mi.load_dict({"type": "musurf", "ndf": "discrete_ggx"})

@@ -7,6 +7,7 @@
 
 int mu_command_eval(int argc, char **argv);
 int mu_command_sample(int argc, char **argv);
+int mu_command_wedge(int argc, char **argv);
 int mu_command_check(int argc, char **argv);
 int mu_command_render(int argc, char **argv);
 int mu_command_surface(int argc, char **argv);

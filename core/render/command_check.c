@@ -6,7 +6,6 @@
  */
 #include <errno.h>
 #include <math.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -55,14 +54,6 @@ typedef struct check_options {
     const char *type;
     _Bool quick, json, materials_given, samples_given;
 } check_options;
-
-/* The processors that this process may use. */
-static uint32_t processors(void) {
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set)) return 1;
-    const int count = CPU_COUNT(&set);
-    return count > 0 ? (uint32_t)count : 1;
-}
 
 static _Bool read_significance(const mu_options *given, double *out) {
     char *end;
@@ -147,7 +138,7 @@ static int run(const check_options *o, mu_plugins *plugins, const mu_check_mater
 }
 
 int mu_command_check(int argc, char **argv) {
-    check_options o = {.settings = {.seed = 1, .threads = processors(), .precision = MUSURF_DOUBLE},
+    check_options o = {.settings = {.seed = 1, .threads = mu_processors(), .precision = MUSURF_DOUBLE},
                        .significance = 0.01,
                        .type = "musurf.microfacet"};
     mu_options given = mu_options_begin(&usage, argc, argv);

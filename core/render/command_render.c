@@ -17,10 +17,10 @@
 
 #include "core/render/command.h"
 #include "core/render/explain.h"
-#include "core/render/features.h"
 #include "core/render/image.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
+#include "core/render/render_scene.h"
 #include "core/render/scene_digest.h"
 
 /* -------------------------------------------------------------------------------------------------- signals
@@ -139,11 +139,6 @@ static mu_image_info info(const mu_job *job) {
 /* ------------------------------------------------------------------------------------------------ rendering
  */
 
-static void sample(const void *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t index,
-                   void *scratch, mu_radiance *out) {
-    mu_integrator_row(tracer, seed, x, y, count, index, scratch, out);
-}
-
 static _Bool stop(void *job) {
     (void)job;
     return interrupted != 0;
@@ -223,22 +218,13 @@ static int give_image(mu_job *job) {
 static int render(mu_job *job, uint32_t limit) {
     const mu_render_options *options = &job->options;
     mu_error error = new_error(job);
-    const mu_tracer tracer = {.scene = &job->scene,
-                              .geometry = job->geometry,
-                              .lights = job->lights,
-                              .footprints = (mu_features_of(&job->scene) &
-                                             (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0};
-    const mu_render_plan plan = {.sample = sample,
-                                 .context = &tracer,
-                                 .scratch = mu_integrator_scratch(&job->scene),
-                                 .seed = job->scene.integrator.seed,
-                                 .threads = options->threads,
-                                 .samples = limit,
-                                 .seconds = options->seconds,
-                                 .noise = options->noise};
+    const mu_render_plan limits = {.threads = options->threads,
+                                   .samples = limit,
+                                   .seconds = options->seconds,
+                                   .noise = options->noise};
     const mu_render_watch watch = {
         .context = job, .stop = stop, .report = report, .checkpoint = checkpoint, .checkpoint_seconds = 60};
-    switch (mu_render(&job->film, &plan, &watch, &error)) {
+    switch (mu_render_scene(&job->film, &job->scene, job->geometry, job->lights, &limits, &watch, &error)) {
     case MU_RENDER_DONE:
         return give_image(job);
     case MU_RENDER_STOPPED:

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/render/command.h"
 #include "core/render/document.h"
@@ -105,11 +104,6 @@ void mu_options_command(int argc, char **argv, size_t size, char *out) {
         const size_t length = strlen(out);
         snprintf(out + length, size - length, " %s", argv[k]);
     }
-}
-
-uint32_t mu_processors(void) {
-    const long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > 256 ? 256 : (uint32_t)count;
 }
 
 static const struct {

@@ -31,7 +31,5 @@ _Bool mu_surface_options(const mu_usage *usage, int argc, char **argv, mu_option
                          const char **file, int *code);
 /* "musurf surface ..." as it was called, for files' headers. */
 void mu_options_command(int argc, char **argv, size_t size, char *out);
-/* Threads to use unless told otherwise: 1 to 256. */
-uint32_t mu_processors(void);
 
 #endif

@@ -22,6 +22,7 @@ static const struct {
     {"eval", mu_command_eval, "values of materials at given directions, JSON Lines in and out"},
     {"sample", mu_command_sample, "directions drawn from a material"},
     {"render", mu_command_render, "an image of a scene file"},
+    {"wedge", mu_command_wedge, "a contact sheet of a scene whose values vary"},
     {"check", mu_command_check, "the numerical validation: random materials, and those of scenes"},
     {"surface", mu_command_surface, "explicit microsurfaces: make heightfields, measure what theory says of them, write meshes"},
     {"tension", mu_command_tension, "how a mesh deforms, as the linear map of its microsurface"},

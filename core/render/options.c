@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +24,13 @@ int mu_refuse(const mu_usage *usage, const char *format, ...) {
     mu_fail(&line, "%s", text); /* makes it printable */
     fprintf(stderr, "musurf %s: %s\n", usage->command, line.text);
     return MU_EXIT_REFUSED;
+}
+
+uint32_t mu_processors(void) {
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set)) return 1;
+    const int count = CPU_COUNT(&set);
+    return count > 0 ? (uint32_t)count : 1;
 }
 
 static void print_option(const char *name, const char *argument, const char *doc) {

@@ -42,6 +42,8 @@ int mu_options_exit(int met);
 _Bool mu_options_unsigned(const mu_options *options, uint64_t min, uint64_t max, uint64_t *out);
 /* One of the NULL-terminated choices. */
 _Bool mu_options_choice(const mu_options *options, const char *const *choices, int *out);
+/* The processors that this process may use, which taskset and containers restrict. */
+uint32_t mu_processors(void);
 /* A line "musurf COMMAND: ..." on stderr. Always returns MU_EXIT_REFUSED. */
 int mu_refuse(const mu_usage *usage, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

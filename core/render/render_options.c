@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,7 +64,7 @@ static _Bool read_number(const mu_options *given, double max, double *out) {
     return 1;
 }
 
-static _Bool read_size(const mu_options *given, uint32_t *width, uint32_t *height) {
+_Bool mu_render_size(const mu_options *given, uint32_t *width, uint32_t *height) {
     const char *text = given->value;
     unsigned long side[2] = {0, 0};
     _Bool good = 1;
@@ -91,12 +90,12 @@ static _Bool read_size(const mu_options *given, uint32_t *width, uint32_t *heigh
     return 1;
 }
 
-/* The processors that this process may use, which taskset and containers restrict. */
-static uint32_t processors(void) {
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set)) return 1;
-    const int count = CPU_COUNT(&set);
-    return count > 0 ? (uint32_t)count : 1;
+_Bool mu_render_progress(const mu_options *given, mu_render_options *options) {
+    static const char *const kinds[] = {"auto", "json", "none", NULL};
+    int kind;
+    if (!mu_options_choice(given, kinds, &kind)) return 0;
+    options->progress = kind == 0 ? MU_PROGRESS_AUTO : kind == 1 ? MU_PROGRESS_JSON : MU_PROGRESS_NONE;
+    return 1;
 }
 
 static _Bool ends_in(const char *text, const char *tail) {
@@ -105,9 +104,7 @@ static _Bool ends_in(const char *text, const char *tail) {
 }
 
 static _Bool take(mu_render_options *options, int met, const mu_options *given) {
-    static const char *const kinds[] = {"auto", "json", "none", NULL};
     uint64_t threads;
-    int kind;
     switch (met) {
     case OUTPUT:
         options->output = given->value;
@@ -122,7 +119,7 @@ static _Bool take(mu_render_options *options, int met, const mu_options *given) 
     case NOISE:
         return read_number(given, 1e6, &options->noise);
     case SIZE:
-        return read_size(given, &options->width, &options->height);
+        return mu_render_size(given, &options->width, &options->height);
     case RESUME:
         return options->resume = 1;
     case EXPLAIN:
@@ -136,9 +133,7 @@ static _Bool take(mu_render_options *options, int met, const mu_options *given) 
         options->threads = (uint32_t)threads;
         return 1;
     case PROGRESS:
-        if (!mu_options_choice(given, kinds, &kind)) return 0;
-        options->progress = kind == 0 ? MU_PROGRESS_AUTO : kind == 1 ? MU_PROGRESS_JSON : MU_PROGRESS_NONE;
-        return 1;
+        return mu_render_progress(given, options);
     case MU_OPTIONS_OPERAND:
         if (options->scene) {
             mu_refuse(given->usage, "one SCENE at a time, but \"%s\" is a second", given->value);
@@ -155,7 +150,7 @@ _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, 
     const mu_usage *usage = &mu_render_usage;
     mu_options given = mu_options_begin(usage, argc, argv);
     int met;
-    *options = (mu_render_options){.threads = processors()};
+    *options = (mu_render_options){.threads = mu_processors()};
     *exit = MU_EXIT_REFUSED;
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met < 0 && met != MU_OPTIONS_OPERAND) {

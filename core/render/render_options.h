@@ -22,4 +22,8 @@ extern const mu_usage mu_render_usage;
 /* False: `exit` is the code to leave with, and whatever was to be said has been said. */
 _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, int *exit);
 
+/* --size and --progress, for other commands that render. False after a line on stderr. */
+_Bool mu_render_size(const mu_options *given, uint32_t *width, uint32_t *height);
+_Bool mu_render_progress(const mu_options *given, mu_render_options *options);
+
 #endif

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 mu_progress mu_progress_begin(const mu_render_options *options) {
-    mu_progress progress = {.last = -1};
+    mu_progress progress = {.last = -1, .command = "render"};
     const char *terminal = getenv("TERM");
     const _Bool bar = isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0;
     progress.show = options->quiet                          ? MU_SHOW_NOTHING
@@ -84,7 +84,7 @@ static void say(mu_progress *progress, const char *event, const char *before, co
         mu_json_string(&progress->json, "text", text);
         mu_json_write(&progress->json, stderr);
     } else {
-        fprintf(stderr, "musurf render: %s%s\n", before, text);
+        fprintf(stderr, "musurf %s: %s%s\n", progress->command, before, text);
     }
 }
 

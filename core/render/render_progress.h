@@ -10,6 +10,7 @@
 
 typedef struct mu_progress {
     enum { MU_SHOW_NOTHING, MU_SHOW_LAST, MU_SHOW_BAR, MU_SHOW_JSON } show;
+    const char *command; /* "render" */
     mu_json json;
     double last; /* when a line of JSON was written */
     _Bool drawn; /* a bar stands on the terminal's line */

@@ -42,17 +42,23 @@ static _Bool read_all(mu_reader *reader) {
            mu_read_attributes(reader) && mu_read_lights(reader);
 }
 
+_Bool mu_scene_from(mu_scene *scene, const mu_document *document, mu_error *error) {
+    memset(scene, 0, sizeof *scene);
+    mu_reader reader = {
+        .scene = scene, .document = document, .root = mu_place_root(document), .error = error};
+    reader.materials = mu_place_member(&reader.root, "materials");
+    reader.meshes = mu_place_member(&reader.root, "meshes");
+    const _Bool ok = read_all(&reader);
+    if (!ok) mu_scene_free(scene);
+    return ok;
+}
+
 _Bool mu_scene_read(mu_scene *scene, const char *file, mu_error *error) {
     mu_document document;
     memset(scene, 0, sizeof *scene);
     if (!mu_document_read(&document, file, error)) return 0;
-    mu_reader reader = {
-        .scene = scene, .document = &document, .root = mu_place_root(&document), .error = error};
-    reader.materials = mu_place_member(&reader.root, "materials");
-    reader.meshes = mu_place_member(&reader.root, "meshes");
-    const _Bool ok = read_all(&reader);
+    const _Bool ok = mu_scene_from(scene, &document, error);
     mu_document_free(&document);
-    if (!ok) mu_scene_free(scene);
     return ok;
 }
 

@@ -116,6 +116,9 @@ typedef struct mu_scene {
 
 /* Reads and checks everything, loads meshes, compiles materials. Warnings go to stderr, one line each. */
 _Bool mu_scene_read(mu_scene *scene, const char *file, mu_error *error);
+/* The same of a document in memory, whose values may have been changed since it was read; it is not kept. */
+struct mu_document;
+_Bool mu_scene_from(mu_scene *scene, const struct mu_document *document, mu_error *error);
 void mu_scene_free(mu_scene *scene);
 
 #endif

@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD", ROOT / "build")).resolve()
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 import exact_caster  # noqa: E402
-from crosscheck import compare_masking, heightfield, known, laws, maps, masking, mesh, normals, options, povray, reflect  # noqa: E402
+from crosscheck import compare_masking, expect, heightfield, known, laws, maps, masking, mesh, normals, options, povray, reflect  # noqa: E402
 from crosscheck import scene, statistics, store, surfaces, verdicts  # noqa: E402
 
 SKEW = np.array([[1.0, 2.0], [0.0, 1.0]])
@@ -168,6 +168,22 @@ class Reflections(unittest.TestCase):
         self.assertAlmostEqual((weight * direction[..., 2]).sum(), np.pi, places=12)
         where = reflect.bins(direction[..., 0], direction[..., 1])
         np.testing.assert_array_equal(where, np.arange(len(where))[:, None] + 0 * where)
+
+
+    def test_bins_take_the_nodes_they_need(self):
+        """A lobe exp(k (cos - 1)), narrower than a bin, whose integral is 2 pi (1 - exp(-2k)) / k but for what is below the horizon."""
+        axis, sharp, asked = maps.direction(70, 50), 3000.0, []
+
+        def shares(at, weights):
+            asked.append(weights.size)
+            lobe = np.exp(sharp * (at @ axis - 1)) * weights
+            return np.stack([lobe.sum(-1), 2 * lobe.sum(-1)])
+        found = expect.settled(shares)
+        exact = 2 * np.pi / sharp
+        np.testing.assert_allclose(found.sum(1), [exact, 2 * exact], rtol=expect.QUADRATURE)
+        coarse = reflect.nodes(6)
+        self.assertGreater(abs(np.exp(sharp * (coarse[0] @ axis - 1)).ravel() @ coarse[1].ravel() / exact - 1), 0.01)
+        self.assertLess(sum(asked), reflect.THETA * reflect.PHI * 16**2)  # and not everywhere
 
 
 class Normals(unittest.TestCase):

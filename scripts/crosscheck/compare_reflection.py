@@ -6,7 +6,7 @@ import numpy as np
 from . import expect, known, statistics
 from .verdicts import bounded, label, statistical
 
-QUADRATURE = 1e-3  # relative, of an albedo from 6 x 6 nodes in bins of 7.5 by 15 degrees: 8 x 8 nodes change it by less
+QUADRATURE = expect.QUADRATURE
 ESCAPING = 1e-3  # of the light, after 20 reflections of perfect mirrors: 1e-4 is seen, near-level rays and the tiles' border
 # rms of the bins' deviations as measured beforehand, sampling included; half of it bounds the total variation, since
 # a mean of magnitudes is at most the rms. Beckmann up to alpha .3 and 75 degrees 5 %; rougher, flatter, or longer-tailed 10 %.

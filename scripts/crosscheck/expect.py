@@ -50,14 +50,38 @@ def joint(core, spec, m, a, b):
     return found
 
 
+QUADRATURE = 1e-3  # relative, of an albedo: the nodes of a bin are doubled until it changes by its part of half of that
+MOST_NODES = 64  # per bin and direction; the quadrature of a narrower lobe is told by the next doubling's size
+
+
+def settled(shares):
+    """shares(directions [bin, node, 3], weights) -> [quantity, bin], with as many nodes in each bin as it takes.
+
+    A stretched surface seen low has lobes narrower than a bin: 6 x 6 nodes in all told GTR's albedo 5 % too high there."""
+    count = 4
+    found = shares(*reflect.nodes(count))
+    open_ = np.arange(found.shape[1])
+    while open_.size and count < MOST_NODES:
+        count *= 2
+        at, weights = reflect.nodes(count)
+        finer = shares(at[open_], weights[open_])
+        change = abs(finer - found[:, open_])
+        found[:, open_] = finer
+        open_ = open_[(change > QUADRATURE / 2 * found.sum(1, keepdims=True) / found.shape[1]).any(0)]
+    return found
+
+
 def reflection(core, spec, m, view):
     """{"bins": single scattering per bin of directions with F = 1, "fresnel": its albedo with the facets' Fresnel,
     "compensated", "walk" and its "walk_error": albedos of all orders}."""
-    at, weights = reflect.nodes()
     base = {**moved(spec, m), "fresnel": {"dielectric": measure.INDEX}}
-    once = core.ask(base, ["f", "F"], np.asarray(view), wi=at)
-    energy = at[..., 2] * weights
-    every = core.ask({**base, "multiple_scattering": "compensated"}, ["f"], np.asarray(view), wi=at)
+    full = {**base, "multiple_scattering": "compensated"}
+
+    def shares(at, weights):
+        once = core.ask(base, ["f", "F"], np.asarray(view), wi=at)
+        every = core.ask(full, ["f"], np.asarray(view), wi=at)
+        return (np.stack([once["f"] / once["F"], once["f"], every["f"]]) * at[..., 2] * weights).sum(-1)
+
+    bins, fresnel, compensated = settled(shares)
     walk, error = core.walk({**base, "multiple_scattering": "random_walk"}, view, WALKS, WALK_SEED)
-    return {"bins": (once["f"] / once["F"] * energy).sum(-1), "fresnel": float((once["f"] * energy).sum()),
-            "compensated": float((every["f"] * energy).sum()), "walk": walk, "walk_error": error}
+    return {"bins": bins, "fresnel": float(fresnel.sum()), "compensated": float(compensated.sum()), "walk": walk, "walk_error": error}

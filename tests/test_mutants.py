@@ -9,6 +9,7 @@ once, with the right core: it must fail and name what disagrees. Prints which ch
 $BUILD/mutants.json: true, false, or null where the mutant was dead already.
 """
 import concurrent.futures
+import functools
 import json
 import os
 import pathlib
@@ -35,18 +36,30 @@ def environment(**extra):
             **extra}
 
 
+@functools.cache
+def mistakes(source):
+    """The mutants that a source file or header holds."""
+    return set(map(int, re.findall(r"\bMUTANT\(\s*([0-9]+)", (ROOT / source).read_text())))
+
+
+def reads(rules, number):
+    """Whether the object with this .d file is made from anything that holds the mutant."""
+    sources = rules.read_text().replace("\\\n", " ").splitlines()[0].split(":", 1)[1].split()
+    return any(number in mistakes(source) for source in sources if source.startswith(("core/", "plugin/")))
+
+
 def build(number):
     """The folder of the mutant's plugin; 0 is the plugin as built."""
     if number == 0:
         return BUILD
     folder = BUILD / "mutants" / str(number)
     shutil.rmtree(folder, ignore_errors=True)
-    # what does not read mutant.h is copied as built, if built without sanitizers; make compiles the rest again
+    # what does not hold the mutant is copied as built, if built without sanitizers; make compiles the rest again
     plain = not re.search(rb"__[atu]b?san_", (BUILD / "musurf_material.so").read_bytes())
     for room in ("core/bsdf", "plugin") if plain else ():
         for made in (BUILD / "obj" / room).glob("*.o"):
             rules = made.with_suffix(".d")
-            if not rules.exists() or "mutant.h" in rules.read_text():
+            if not rules.exists() or reads(rules, number):
                 continue
             there = folder / "obj" / room / made.name
             there.parent.mkdir(parents=True, exist_ok=True)

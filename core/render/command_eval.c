@@ -4,16 +4,10 @@
  * command_eval.c: `musurf eval`, JSON Lines in, JSON Lines out. Local frame: z is the macrosurface normal,
  * directions point away from the surface. D, Dv, f and pdf are per steradian; f holds no cosine.
  */
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
 
+#include "core/render/answers.h"
 #include "core/render/command.h"
-#include "core/render/lines.h"
-#include "core/render/options.h"
 #include "core/render/query.h"
 
 static const mu_option options[] = {
@@ -45,11 +39,7 @@ static const mu_usage usage = {
 
 typedef struct evaluation {
     mu_query_cache cache;
-    mu_json json;
     musurf_precision precision;
-    const char *name; /* of the file, for messages */
-    size_t lines, bad;
-    int output_failure; /* errno of the write that failed */
 } evaluation;
 
 /* The first quantity that JSON cannot say, or NULL; Lambda alone may be infinite. */
@@ -65,7 +55,8 @@ static const char *not_finite(const musurf_probe_values *v) {
     return isnan(v->Lambda) ? "Lambda" : NULL;
 }
 
-static _Bool answer(evaluation *e, const mu_document *document, mu_error *error) {
+static _Bool answer(void *context, const mu_document *document, mu_json *json, mu_error *error) {
+    evaluation *const e = context;
     static const char *const known[] = {"material", "wo", "wm", "wi", "id", NULL};
     const mu_place root = mu_place_root(document);
     if (!mu_place_only(&root, known, error)) return 0;
@@ -88,7 +79,6 @@ static _Bool answer(evaluation *e, const mu_document *document, mu_error *error)
         return mu_place_fail(&root, error, "%s has no finite %s for this material and these directions",
                              probed.type, beyond);
 
-    mu_json *const json = &e->json;
     mu_json_begin(json);
     mu_query_put_id(json, document->text, document->length, 0);
     mu_json_number(json, "Lambda", v.Lambda);
@@ -108,63 +98,6 @@ static _Bool answer(evaluation *e, const mu_document *document, mu_error *error)
     return 1;
 }
 
-/* True unless standard output failed. */
-static _Bool answer_line(evaluation *e, mu_line status, const char *text, size_t length, size_t number) {
-    mu_error error = {.text = ""};
-    mu_document document = {0};
-    _Bool good = 0;
-    e->lines++;
-    if (status == MU_LINE_TOO_LONG)
-        mu_fail(&error, "%s:%zu: the line is longer than %d MiB", e->name, number, MU_DOCUMENT_LIMIT >> 20);
-    else if (mu_document_parse(&document, e->name, text, length, number, &error))
-        good = answer(e, &document, &error);
-    if (!good) {
-        e->bad++;
-        mu_json_begin(&e->json);
-        mu_query_put_id(&e->json, text, status == MU_LINE ? length : 0, 1);
-        mu_json_string(&e->json, "error", error.text);
-    }
-    mu_document_free(&document);
-    if (mu_json_write(&e->json, stdout)) return 1;
-    e->output_failure = errno;
-    return 0;
-}
-
-static _Bool is_blank(const char *text, size_t length) {
-    for (size_t i = 0; i < length; i++)
-        if (!strchr(" \t\r", text[i]) || !text[i]) return 0;
-    return 1;
-}
-
-static _Bool flush_answers(void *context) {
-    evaluation *e = context;
-    if (fflush(stdout) == 0) return 1;
-    e->output_failure = errno;
-    return 0;
-}
-
-static int answer_all(evaluation *e, int file) {
-    mu_lines lines = {.file = file, .before_read = flush_answers, .context = e};
-    const char *text;
-    size_t length;
-    mu_line status;
-    _Bool written = 1;
-    while (written) {
-        status = mu_lines_next(&lines, MU_DOCUMENT_LIMIT, &text, &length);
-        if (status == MU_LINES_END || status == MU_LINES_FAILED) break;
-        if (!is_blank(text, length)) written = answer_line(e, status, text, length, lines.number);
-    }
-    const int failure = lines.failure;
-    mu_lines_free(&lines);
-    if (e->output_failure || !flush_answers(e)) {
-        fprintf(stderr, "musurf eval: standard output: %s\n", strerror(e->output_failure));
-        return MU_EXIT_FAILED;
-    }
-    if (failure) return mu_refuse(&usage, "%s: cannot be read: %s", e->name, strerror(failure));
-    if (e->bad) fprintf(stderr, "musurf eval: %zu of %zu lines could not be answered\n", e->bad, e->lines);
-    return e->bad ? MU_EXIT_FAILED : MU_EXIT_OK;
-}
-
 int mu_command_eval(int argc, char **argv) {
     static const char *const precisions[] = {"float", "double", NULL};
     int precision = 1, met;
@@ -182,16 +115,10 @@ int mu_command_eval(int argc, char **argv) {
         }
     }
 
-    const _Bool standard = strcmp(input, "-") == 0;
-    const int file = standard ? STDIN_FILENO : open(input, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return mu_refuse(&usage, "%s: cannot be opened: %s", input, strerror(errno));
-    evaluation e = {.precision = precision ? MUSURF_DOUBLE : MUSURF_FLOAT,
-                    .name = standard ? "stdin" : input};
+    evaluation e = {.precision = precision ? MUSURF_DOUBLE : MUSURF_FLOAT};
     mu_error error = {.text = ""};
-    const int code =
-        mu_query_cache_make(&e.cache, &error) ? answer_all(&e, file) : mu_refuse(&usage, "%s", error.text);
+    const int code = mu_query_cache_make(&e.cache, &error) ? mu_answer_file(&usage, input, answer, &e)
+                                                           : mu_refuse(&usage, "%s", error.text);
     mu_query_cache_free(&e.cache);
-    mu_json_free(&e.json);
-    if (!standard) close(file);
     return code;
 }

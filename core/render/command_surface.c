@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "core/render/command.h"
-#include "core/render/document.h"
 #include "core/render/error.h"
+#include "core/render/subcommand.h"
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
@@ -106,32 +106,15 @@ void mu_options_command(int argc, char **argv, size_t size, char *out) {
     }
 }
 
-static const struct {
-    const char *name;
-    int (*run)(int argc, char **argv);
-} commands[] = {
-    {"boxes", mu_command_surface_boxes}, {"fit", mu_command_surface_fit},
-    {"make", mu_command_surface_make},   {"measure", mu_command_surface_measure},
-    {"mesh", mu_command_surface_mesh},   {"read", mu_command_surface_read},
-    {"soup", mu_command_surface_soup},   {"statistics", mu_command_surface_statistics},
-};
-enum { COMMANDS = sizeof commands / sizeof commands[0] };
-
 int mu_command_surface(int argc, char **argv) {
-    const char *known[COMMANDS + 1] = {NULL};
-    char list[256] = "";
-    for (int k = 0; k < COMMANDS; k++) {
-        if (argc > 1 && strcmp(argv[1], commands[k].name) == 0) return commands[k].run(argc - 1, argv + 1);
-        const size_t length = strlen(list);
-        snprintf(list + length, sizeof list - length, "%s%s", k ? (k < COMMANDS - 1 ? ", " : " or ") : "",
-                 commands[k].name);
-        known[k] = commands[k].name;
-    }
-    mu_options given = mu_options_begin(&usage, argc, argv);
-    const int met = mu_options_next(&given);
-    if (met == MU_OPTIONS_HELP || met == MU_OPTIONS_REFUSED) return mu_options_exit(met);
-    if (met != MU_OPTIONS_OPERAND) return mu_refuse(&usage, "%s? See musurf surface --help", list);
-    const char *const nearest = mu_nearest(given.value, known);
-    return nearest ? mu_refuse(&usage, "there is no \"%.60s\"; did you mean \"%s\"?", given.value, nearest)
-                   : mu_refuse(&usage, "there is no \"%.60s\"; %s?", given.value, list);
+    static const mu_subcommand list[] = {{"boxes", mu_command_surface_boxes},
+                                         {"fit", mu_command_surface_fit},
+                                         {"make", mu_command_surface_make},
+                                         {"measure", mu_command_surface_measure},
+                                         {"mesh", mu_command_surface_mesh},
+                                         {"read", mu_command_surface_read},
+                                         {"soup", mu_command_surface_soup},
+                                         {"statistics", mu_command_surface_statistics},
+                                         {NULL, NULL}};
+    return mu_run_subcommand(&usage, list, argc, argv);
 }

@@ -22,7 +22,7 @@ CPPFLAGS += -D_GNU_SOURCE -DMUSURF_VERSION='"$(VERSION)"' -I.
 LDFLAGS  += $(SANITIZE) -pthread
 
 .DEFAULT_GOAL := all
-.PHONY: all clean distclean install uninstall test demo bench tables stability report efficiency geometry costs deps help run-test \
+.PHONY: all clean distclean install uninstall test demo bench fuzz run-fuzz tables stability report efficiency geometry costs deps help run-test \
         run-demo run-tables run-stability run-report run-efficiency run-geometry run-costs asan ubsan tsan
 
 # Rooms: each adds to LIBRARIES, PROGRAMS, MODULES, TEST_PROGRAMS and TESTS.
@@ -33,7 +33,8 @@ DISTRIBUTION_HEADERS :=
 PROGRAMS  :=
 TEST_PROGRAMS :=
 TESTS     :=
--include core/bsdf/rules.mk plugin/rules.mk plugin/mitsuba/rules.mk core/render/rules.mk core/surface/rules.mk core/tension/rules.mk
+-include core/bsdf/rules.mk plugin/rules.mk plugin/mitsuba/rules.mk core/render/rules.mk core/surface/rules.mk core/tension/rules.mk \
+         core/ibl/rules.mk
 -include tests/rules.mk scripts/rules.mk
 
 all: $(LIBRARIES) $(MODULES) $(PROGRAMS)
@@ -98,6 +99,7 @@ help:
 	@echo 'make demo       install what is missing, build, render Figure 1, check against POV-Ray, write a report'
 	@echo 'make test       install what is missing, build, run the test suite (ONLY="words" picks tests by name)'
 	@echo 'make            build everything into $(BUILD)/'
+	@echo 'make fuzz       a million random lines to musurf ibl axis: nothing that is not finite'
 	@echo 'make bench      speed, as ratios measured in one run'
 	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance; README=1: also there'
 	@echo 'make geometry   mirror facets rendered by POV-Ray beside the material fitted to them; QUICK=1: a glance'

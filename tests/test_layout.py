@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """The layout is the architecture: which room may see which, and the house rules of every source file.
 
-core/bsdf includes nothing of any other room; core/surface sees core/bsdf at most, core/tension its
+core/bsdf includes nothing of any other room; core/surface and core/ibl see core/bsdf at most, core/tension its
 singular values; core/render sees materials only through plugin/'s headers; plugin sees
 core; scripts are not needed to build.
 """
@@ -24,7 +24,8 @@ ALLOWED = {
     "core/bsdf/": ("core/bsdf/",),
     "core/surface/": ("core/surface/", "core/bsdf/"),
     "core/tension/": ("core/tension/", "core/bsdf/singular.h"),
-    "core/render/": ("core/render/", "core/surface/", "core/tension/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h",
+    "core/ibl/": ("core/ibl/", "core/bsdf/"),
+    "core/render/": ("core/render/", "core/surface/", "core/tension/", "core/ibl/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h",
                      "plugin/musurf_map.h"),
     "plugin/": ("plugin/", "musurf_plugin.h", "musurf_probe.h", "core/bsdf/"),
     "tests/": ("core/", "plugin/", "tests/"),

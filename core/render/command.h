@@ -12,6 +12,7 @@ int mu_command_check(int argc, char **argv);
 int mu_command_render(int argc, char **argv);
 int mu_command_surface(int argc, char **argv);
 int mu_command_tension(int argc, char **argv);
+int mu_command_ibl(int argc, char **argv);
 int mu_command_info(int argc, char **argv);
 
 #endif

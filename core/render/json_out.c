@@ -71,12 +71,26 @@ void mu_json_number(mu_json *json, const char *key, double value) {
     put_number(json, value);
 }
 
-void mu_json_numbers(mu_json *json, const char *key, const double *values, size_t count) {
-    put_key(json, key);
+static void put_numbers(mu_json *json, const double *values, size_t count) {
     put(json, "[", 1);
     for (size_t i = 0; i < count; i++) {
         if (i) put(json, ", ", 2);
         put_number(json, values[i]);
+    }
+    put(json, "]", 1);
+}
+
+void mu_json_numbers(mu_json *json, const char *key, const double *values, size_t count) {
+    put_key(json, key);
+    put_numbers(json, values, count);
+}
+
+void mu_json_vectors(mu_json *json, const char *key, const double *values, size_t count, size_t size) {
+    put_key(json, key);
+    put(json, "[", 1);
+    for (size_t i = 0; i < count; i++) {
+        if (i) put(json, ", ", 2);
+        put_numbers(json, values + i * size, size);
     }
     put(json, "]", 1);
 }

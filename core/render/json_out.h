@@ -22,6 +22,8 @@ void mu_json_raw(mu_json *json, const char *key, const char *text, size_t length
 void mu_json_string(mu_json *json, const char *key, const char *text);
 void mu_json_number(mu_json *json, const char *key, double value);
 void mu_json_numbers(mu_json *json, const char *key, const double *values, size_t count);
+/* [[x, y, z], ...]: `count` lists of `size` numbers each. */
+void mu_json_vectors(mu_json *json, const char *key, const double *values, size_t count, size_t size);
 /* An object within: begun and filled in another mu_json, which is ended by this. */
 void mu_json_object(mu_json *json, const char *key, const mu_json *object);
 /* A list of objects: each is begun and filled in another mu_json and then added, which ends it. */

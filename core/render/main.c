@@ -26,6 +26,7 @@ static const struct {
     {"check", mu_command_check, "the numerical validation: random materials, and those of scenes"},
     {"surface", mu_command_surface, "explicit microsurfaces: make heightfields, measure what theory says of them, write meshes"},
     {"tension", mu_command_tension, "how a mesh deforms, as the linear map of its microsurface"},
+    {"ibl", mu_command_ibl, "image-based lighting: the major axis of a lobe and samples along it"},
     {"info", mu_command_info, "distributions, parameters, build"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -18,6 +18,7 @@ enum {
     VIEW,
     BOUNCES,
     FRESNEL,
+    TRANSMISSION,
     LIGHT,
     RINGS,
     SECTORS,
@@ -36,9 +37,12 @@ static const mu_option options[] = {
     {"bounces", "N", "mirror reflections to follow, 0 to 64 (default: 1; 0 leaves reflection out)"},
     {"fresnel", "LAW",
      "none (default: mirrors), schlick:R[,G,B], dielectric:ETA, conductor:N,K or\nconductor:N,N,N,K,K,K"},
+    {"transmission", NULL,
+     "follow what facets refract as well: the index below is ETA times that above, where the\n"
+     "views are (ETA < 1: from inside a dense medium). Needs --fresnel dielectric:ETA"},
     {"light", "X,Y,Z[,DEGREES]",
      "a disc of light about this direction (default: 10 degrees from its middle to its border),\n"
-     "wholly above the horizon; up to 16 of them"},
+     "wholly above the horizon or, with --transmission, wholly below; up to 16 of them"},
     {"rings", "R", "bins of directions from zenith to horizon, 1 to 180 (default: 12)"},
     {"sectors", "S", "bins of directions around, 1 to 720 (default: 24)"},
     {"slopes", "K", "the histogram of slopes has K x K cells, 1 to 1024 (default: 32)"},
@@ -47,8 +51,8 @@ static const mu_option options[] = {
     {"subsamples", "K", "points per facet: a square, 9 to 225 (default: 9)"},
     {"tracer", "own|embree|povray",
      "what views see: own: exact, double precision (default); embree: float; povray: the program "
-     "POV-Ray.\nReflections always by the "
-     "first"},
+     "POV-Ray.\nWhat facets "
+     "reflect or refract always by the first"},
     {"threads", "N", "threads (default: one per processor); the result does not depend on it"},
     MU_SURFACE_SOURCE_OPTIONS,
     {NULL, NULL, NULL}};
@@ -80,10 +84,20 @@ static const mu_usage usage = {
     "                      \"lost\" (rays that all but stay level, 2^23 edges on) + \"absorbed\" (by F) = 1\n"
     "      \"orders\"        after 1, 2, ... reflections: \"albedo\", and \"density\", 1/sr, per bin of the outgoing\n"
     "                      direction; it holds the cosine: the BRDF is density / cos theta\n"
-    "      \"lights\"        per --light: \"f\", 1/sr, the BRDF's mean over the disc, Eq. (11f) of On Microsurface\n"
+    "      \"lights\"        per --light above: \"f\", 1/sr, the BRDF's mean over the disc, Eq. (11f) of On Microsurface\n"
     "                      Transformations (Golubev), F and the light asked for every facet; \"f_grouped\", the\n"
     "                      same of facets sorted by normal into groups, 8 R x 8 S (up to 360 x 1440), F and the light\n"
     "                      asked once a group; \"f_all_orders\", with further reflections\n"
+    "    \"transmission\"    with --transmission, from the same points, in the same shares: what facets refract\n"
+    "                      once and \"escaped\" downward; was \"caught\", meets the underside again; \"reflected\", of\n"
+    "                      which \"total_reflection\": the first three add up to 1\n"
+    "      \"factor\"        1/ETA^2, by which refraction changes radiance on its way to the viewer: index squared on the\n"
+    "                      viewer's side over that on the light's. Eq. (11f) is printed with its inverse, against\n"
+    "                      Eq. (9c)\n"
+    "      \"density\"       1/sr, per bin of the direction below, theta from -z: it holds the cosine and the factor: the\n"
+    "                      BTDF, for radiance, is density / |cos theta|. All of it is escaped times factor\n"
+    "      \"lights\"        per --light below: \"f\", the BTDF's mean over the disc, Eq. (11f); \"f_grouped\". Lights\n"
+    "                      above are in \"reflection\"\n"
     "  \"pairs\"    per two views \"a\", \"b\" (0 is the first), per normal bin: share of the area that is \"facing\"\n"
     "             both; \"G2\", that both see; \"G2_facet_mean\": points seen by both, of facets that face both.\n"
     "             Give the direction of a light as a view to have its G2\n"
@@ -153,8 +167,11 @@ static _Bool read_light(mu_inquiry *q, const mu_options *at) {
         return mu_refuse(&usage, "more than %d lights", MU_STATISTICS_LIGHTS), 0;
     if (!mu_options_numbers(at, 3, 4, v)) return 0;
     const double length = hypot(hypot(v[0], v[1]), v[2]), flat = hypot(v[0], v[1]);
-    if (!(length > 0 && isfinite(length) && v[3] > 0 && atan2(flat, v[2]) + v[3] * degree <= 90 * degree))
-        return mu_refuse(&usage, "--light is \"%s\"; the disc must lie above the horizon", at->value), 0;
+    if (!(length > 0 && isfinite(length) && v[3] > 0 &&
+          atan2(flat, fabs(v[2])) + v[3] * degree <= 90 * degree))
+        return mu_refuse(&usage, "--light is \"%s\"; the disc must lie above the horizon, or below",
+                         at->value),
+               0;
     q->g.lamps[q->g.lamp_count++] = (mu_lamp){{v[0] / length, v[1] / length, v[2] / length}, v[3] * degree};
     return 1;
 }
@@ -183,6 +200,8 @@ static _Bool read_option(mu_inquiry *q, const mu_options *at, int met) {
         return read_whole(at, 0, MU_BOUNCES_MOST, &g->bounces);
     case FRESNEL:
         return read_fresnel(q, at);
+    case TRANSMISSION:
+        return g->transmission = 1;
     case LIGHT:
         return read_light(q, at);
     case RINGS:
@@ -210,6 +229,25 @@ static _Bool read_option(mu_inquiry *q, const mu_options *at, int met) {
     default:
         return read_whole(at, 1, 256, &g->threads);
     }
+}
+
+/* What options ask of each other. */
+static _Bool consistent(const mu_gathering *g) {
+    const mu_reflectance *r = &g->reflectance;
+    uint32_t below = 0;
+    for (uint32_t k = 0; k < g->lamp_count; k++) below += mu_lamp_below(&g->lamps[k]);
+    const char *wrong = NULL;
+    if (!g->file_count)
+        wrong = "a heightfield FILE is needed";
+    else if (g->lamp_count && !g->view_count)
+        wrong = "--light needs a --view";
+    else if (g->lamp_count > below && !g->bounces)
+        wrong = "--light needs --bounces of 1 or more";
+    else if (below && !g->transmission)
+        wrong = "--light from below needs --transmission";
+    else if (g->transmission && !(r->kind == MU_REFLECTS_INDEX && r->channels == 1 && r->b[0] == 0))
+        wrong = "--transmission needs --fresnel dielectric:ETA";
+    return !wrong || (mu_refuse(&usage, "%s", wrong), 0);
 }
 
 static double now(void) {
@@ -297,8 +335,6 @@ int mu_command_surface_statistics(int argc, char **argv) {
             return MU_EXIT_REFUSED;
         }
     }
-    if (!q.g.file_count) return mu_refuse(&usage, "a heightfield FILE is needed");
-    if (q.g.lamp_count && !q.g.view_count) return mu_refuse(&usage, "--light needs a --view");
-    if (q.g.lamp_count && !q.g.bounces) return mu_refuse(&usage, "--light needs --bounces of 1 or more");
+    if (!consistent(&q.g)) return MU_EXIT_REFUSED;
     return run(&q);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* surface_paths.c: paths of light from the points that a view sees, followed on all threads, added up in one order. */
-#include <math.h>
 #include <stdlib.h>
 
 #include "core/render/surface_rows.h"
 #include "core/render/surface_statistics.h"
 
 enum { ROWS = 64 }; /* followed before they are added up */
-
-static const double pi = 3.14159265358979323846;
 
 /* What remains of a path once F is known. */
 typedef struct mu_followed {
@@ -56,20 +53,12 @@ static void follow_row(void *context, uint32_t row) {
     }
 }
 
-static double radiance(const mu_lamp *lamp, const double r[3]) {
-    double chord = 0; /* 2 sin of half the angle between: no cancellation for narrow lamps */
-    for (int k = 0; k < 3; k++) chord += (r[k] - lamp->l[k]) * (r[k] - lamp->l[k]);
-    const double most = 2 * sin(lamp->radius / 2), sine = sin(lamp->radius);
-    return chord <= most * most ? 1 / (pi * sine * sine * lamp->l[2]) : 0;
-}
-
 static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) {
     static const int cell[] = {[MU_PATH_ESCAPED] = MU_END_ESCAPED,
                                [MU_PATH_OVER_LIMIT] = MU_END_OVER_LIMIT,
                                [MU_PATH_LOST] = MU_END_LOST};
     const double share = p->weight / ((double)g->side * g->side);
     const size_t bins = mu_directions_count(&g->bins) + 1;
-    s->light[unit] += share;
     for (int c = 0; c < mu_gathering_channels(g); c++) {
         const double light = share * p->left[c];
         mu_ratios_add(&s->ends[c], unit, MU_END_ABSORBED, share * (1 - p->left[c]));
@@ -79,7 +68,7 @@ static void add(mu_gathering *g, mu_seen *s, size_t unit, const mu_followed *p) 
         mu_ratios_add(&s->directions[c], unit, (p->count - 1u) * bins + mu_directions_bin(&g->bins, p->out),
                       light);
         for (uint32_t k = 0; k < g->lamp_count; k++) {
-            const double shown = light * radiance(&g->lamps[k], p->out);
+            const double shown = light * mu_lamp_radiance(&g->lamps[k], p->out);
             if (!(shown > 0)) continue;
             if (p->count == 1) mu_ratios_add(&s->lamps[c], unit, 2 * (size_t)k, shown);
             mu_ratios_add(&s->lamps[c], unit, 2 * (size_t)k + 1, shown);
@@ -108,27 +97,4 @@ _Bool mu_gathering_paths(mu_gathering *g, uint32_t file, const mu_mirrors *mirro
     }
     free(t.paths);
     return 1;
-}
-
-typedef struct mu_grouped {
-    const mu_gathering *g;
-    const mu_lamp *lamp;
-    int channel;
-} mu_grouped;
-
-static double fresnel_of(void *context, double cosine) {
-    const mu_grouped *at = context;
-    return mu_reflectance_at(&at->g->reflectance, at->channel, fmin(cosine, 1));
-}
-
-static double radiance_of(void *context, const double r[3]) {
-    return radiance(((const mu_grouped *)context)->lamp, r);
-}
-
-double mu_gathering_grouped(const mu_gathering *g, const mu_seen *seen, uint32_t lamp, int channel) {
-    mu_grouped at = {g, &g->lamps[lamp], channel};
-    const mu_lighting lighting = {fresnel_of, radiance_of, &at};
-    double light = 0;
-    for (size_t k = 0; k < g->units; k++) light += seen->light[k];
-    return mu_reflect_groups(seen->groups, mu_directions_count(&g->finer) + 1, seen->unit, &lighting) / light;
 }

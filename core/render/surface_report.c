@@ -84,6 +84,12 @@ static void put_normals(mu_pages *p, mu_json *json) {
     mu_json_number(json, "area", area);
 }
 
+static void put_lamp(const mu_gathering *g, uint32_t lamp, mu_json *json) {
+    mu_json_begin(json);
+    mu_json_numbers(json, "light", g->lamps[lamp].l, 3);
+    mu_json_number(json, "radius", g->lamps[lamp].radius * 180 / 3.14159265358979323846);
+}
+
 static void put_reflection(mu_pages *p, const mu_seen *s, int c, mu_json *json, mu_json *inner) {
     const mu_gathering *g = p->g;
     const size_t bins = mu_directions_count(&g->bins);
@@ -102,12 +108,30 @@ static void put_reflection(mu_pages *p, const mu_seen *s, int c, mu_json *json, 
     if (!g->lamp_count) return;
     mu_json_list_begin(json, "lights");
     for (uint32_t k = 0; k < g->lamp_count; k++) {
-        mu_json_begin(inner);
-        mu_json_numbers(inner, "light", g->lamps[k].l, 3);
-        mu_json_number(inner, "radius", g->lamps[k].radius * 180 / 3.14159265358979323846);
+        if (mu_lamp_below(&g->lamps[k])) continue;
+        put_lamp(g, k, inner);
         put_one(inner, "f", &s->lamps[c], 2 * (size_t)k);
         mu_json_number(inner, "f_grouped", mu_gathering_grouped(g, s, k, c));
         put_one(inner, "f_all_orders", &s->lamps[c], 2 * (size_t)k + 1);
+        mu_json_list_add(json, inner);
+    }
+    mu_json_list_end(json);
+}
+
+static void put_transmission(mu_pages *p, const mu_seen *s, mu_json *json, mu_json *inner) {
+    const mu_gathering *g = p->g;
+    static const char *const names[MU_THROUGHS] = {"escaped", "caught", "reflected", "total_reflection"};
+    mu_json_begin(json);
+    for (int k = 0; k < MU_THROUGHS; k++) put_one(json, names[k], &s->through.ends, (size_t)k);
+    mu_json_number(json, "factor", 1 / (g->reflectance.a[0] * g->reflectance.a[0]));
+    put_many(p, json, "density", &s->through.directions, 0, mu_directions_count(&g->bins), solid_angles(p));
+    if (!g->lamp_count) return;
+    mu_json_list_begin(json, "lights");
+    for (uint32_t k = 0; k < g->lamp_count; k++) {
+        if (!mu_lamp_below(&g->lamps[k])) continue;
+        put_lamp(g, k, inner);
+        put_one(inner, "f", &s->through.lamps, k);
+        mu_json_number(inner, "f_grouped", mu_gathering_grouped(g, s, k, 0));
         mu_json_list_add(json, inner);
     }
     mu_json_list_end(json);
@@ -123,6 +147,10 @@ static void put_view(mu_pages *p, const mu_seen *s, mu_json *json, mu_json *one,
     put_many(p, json, "G1", &s->masking, 0, bins, NULL);
     put_many(p, json, "Dv", &s->normals, 0, bins, solid_angles(p));
     put_one(json, "projected_area", &s->identity, 0);
+    if (g->transmission) {
+        put_transmission(p, s, one, inner);
+        mu_json_object(json, "transmission", one);
+    }
     if (!g->bounces) return;
     mu_json_list_begin(json, "reflection");
     for (int c = 0; c < mu_gathering_channels(g); c++) {

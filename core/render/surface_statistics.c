@@ -18,12 +18,11 @@ static _Bool make_view(mu_gathering *g, mu_seen *s) {
     good = mu_ratios_make(&s->projected, g->units, 1, NULL) && good;
     good = mu_ratios_make(&s->identity, g->units, 1, g->macro) && good;
     good = mu_ratios_make(&s->normals, g->units, bins, g->macro) && good;
-    s->light = calloc(g->units, sizeof *s->light);
-    if (!s->light) return 0;
+    if (g->transmission) good = mu_through_make(g, s) && good;
     for (int c = 0; c < mu_gathering_channels(g); c++) {
-        good = mu_ratios_make(&s->ends[c], g->units, MU_ENDS + g->bounces, s->light) && good;
-        good = mu_ratios_make(&s->directions[c], g->units, g->bounces * bins, s->light) && good;
-        good = mu_ratios_make(&s->lamps[c], g->units, 2 * (size_t)g->lamp_count, s->light) && good;
+        good = mu_ratios_make(&s->ends[c], g->units, MU_ENDS + g->bounces, s->identity.top) && good;
+        good = mu_ratios_make(&s->directions[c], g->units, g->bounces * bins, s->identity.top) && good;
+        good = mu_ratios_make(&s->lamps[c], g->units, 2 * (size_t)g->lamp_count, s->identity.top) && good;
     }
     if (g->lamp_count) s->groups = calloc(mu_directions_count(&g->finer) + 1, sizeof *s->groups);
     return good && (s->groups || !g->lamp_count);
@@ -65,7 +64,8 @@ void mu_gathering_free(mu_gathering *g) {
         mu_ratios_free(&s->identity), mu_ratios_free(&s->normals);
         for (int c = 0; c < 3; c++)
             mu_ratios_free(&s->ends[c]), mu_ratios_free(&s->directions[c]), mu_ratios_free(&s->lamps[c]);
-        free(s->light), free(s->groups), free(s->visible);
+        mu_through_free(&s->through);
+        free(s->groups), free(s->visible);
     }
     for (uint32_t k = 0; g->pairs && k < g->pair_count; k++) {
         mu_seen_pair *p = &g->pairs[k];
@@ -151,6 +151,7 @@ static _Bool look_everywhere(mu_gathering *g, uint32_t file, const mu_heightfiel
                 if (g->progress) g->progress(g->context, done / all);
                 if (!look(g, surface, s, f, upper, point, error)) return 0;
                 if (g->bounces && !mu_gathering_paths(g, file, &mirrors, s, upper, point, error)) return 0;
+                if (g->transmission && !mu_gathering_through(g, file, f, s, upper, point, error)) return 0;
             }
             add_up(g, file, f, upper, bins + (upper ? mu_cells(f) : 0));
         }
@@ -166,6 +167,7 @@ _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, 
         if (more) g->views[k].visible = more;
         good = more != NULL;
     }
+    if (good && g->transmission) good = (g->underside = mu_underside_caster(f)) != NULL;
     if (!good) mu_fail(error, "not enough memory for a surface of %u x %u", f->nx, f->ny);
     good = good && mu_gathering_normals(g, file, f, bins, error);
     if (good && g->view_count) {
@@ -179,6 +181,8 @@ _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, 
         good = surface && look_everywhere(g, file, f, surface, bins, error);
         if (surface) g->tracer->close(surface);
     }
+    mu_caster_free(g->underside);
+    g->underside = NULL;
     free(bins);
     return good;
 }

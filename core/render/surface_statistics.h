@@ -18,6 +18,9 @@
  * `radius` of it, of the radiance 1 / (pi sin^2 radius cos theta_l), whose irradiance is 1: then Eq. (11f) gives the
  * BRDF's mean over the disc, weighted by cosine.
  *
+ * What a dielectric's facets refract, once, is followed from the same points (refract.h); below the surface, where a light
+ * may be too. Bins of directions below are the mirror images, in the plane, of those above.
+ *
  * All sums are kept per unit (ratio.h): each of several files is one, or else each of 4 x 4 blocks of a single surface.
  */
 #ifndef MU_SURFACE_STATISTICS_H
@@ -28,6 +31,7 @@
 #include "core/surface/ratio.h"
 #include "core/surface/reflect.h"
 #include "core/surface/reflectance.h"
+#include "core/surface/underside.h"
 
 enum {
     MU_STATISTICS_VIEWS = 16,
@@ -39,24 +43,40 @@ enum {
 
 /* What becomes of the light of a view, in the order of the cells of mu_seen.ends: shares of it. */
 enum { MU_END_ESCAPED, MU_END_OVER_LIMIT, MU_END_LOST, MU_END_ABSORBED, MU_ENDS };
+/* What becomes of it at the first facet: gets through; meets the underside again; is reflected, of which totally. The first
+ * three add up to 1. */
+enum { MU_THROUGH_ESCAPED, MU_THROUGH_CAUGHT, MU_THROUGH_REFLECTED, MU_THROUGH_TOTAL, MU_THROUGHS };
 /* Cells of mu_gathering.slopes after its histogram. */
 enum { MU_SLOPE_OUTSIDE, MU_SLOPE_X, MU_SLOPE_Y, MU_SLOPE_XX, MU_SLOPE_XY, MU_SLOPE_YY, MU_SLOPE_MORE };
 
 typedef struct mu_lamp {
     double l[3], radius; /* unit vector; radians */
 } mu_lamp;
+static inline _Bool mu_lamp_below(const mu_lamp *lamp) {
+    return lamp->l[2] < 0;
+}
+/* Of the light that comes from the direction w. */
+double mu_lamp_radiance(const mu_lamp *lamp, const double w[3]);
+
+/* Of light refracted once. */
+typedef struct mu_through {
+    mu_ratios ends;       /* MU_THROUGHS shares */
+    mu_ratios directions; /* per bin, shares times 1/eta^2: radiance */
+    mu_ratios lamps;      /* one cell a light: f */
+    mu_group *groups;     /* of `finer`, if there are lights; what gets through, in shares before 1 - F */
+} mu_through;
 
 typedef struct mu_seen {
     double w[3], unit[3];      /* as asked but for a power of two; as a unit vector */
     mu_ratios facing, masking; /* per bin of normals: area that faces w, that w sees, over all area */
     mu_ratios projected;       /* one cell: projected area that w sees over that which faces w */
-    mu_ratios identity;        /* one cell: over the plane's own */
-    double *light;     /* per unit: what the identity's adds up to, the bottom of what follows but normals */
+    mu_ratios identity; /* one cell: over the plane's own; its top is the bottom of all that follows but normals */
     mu_ratios normals; /* per bin: Dv times the solid angle */
     mu_ratios ends[3]; /* per colour: MU_ENDS shares, then the albedo of each order */
     mu_ratios directions[3]; /* per colour: per order and bin, shares */
     mu_ratios lamps[3];      /* per colour, two cells a light: f of one reflection, of all */
     mu_group *groups;        /* of `finer`, if there are lights; what escapes after one reflection */
+    mu_through through;
     uint8_t *visible;        /* nx * ny, of the point at hand */
 } mu_seen;
 
@@ -76,12 +96,14 @@ typedef struct mu_gathering {
     double slope_bounds[4]; /* x_min, x_max, y_min, y_max; all 0: from the first surface */
     mu_lamp lamps[MU_STATISTICS_LIGHTS];
     mu_reflectance reflectance;
+    _Bool transmission; /* then the reflectance is a dielectric's, of one colour */
     void (*progress)(void *context, double done);
     void *context;
     /* gathered */
     mu_directions
         finer; /* MU_GROUPS_FINER times the rings and sectors, at most MU_GROUP_RINGS and four times that */
     mu_seen views[MU_STATISTICS_VIEWS];
+    mu_caster *underside; /* of the surface at hand, for transmission */
     mu_seen_pair *pairs;
     uint32_t pair_count;
     size_t units;
@@ -99,8 +121,8 @@ _Bool mu_gathering_begin(mu_gathering *g, mu_error *error);
 _Bool mu_gathering_add(mu_gathering *g, uint32_t file, const mu_heightfield *f, mu_error *error);
 void mu_gathering_free(mu_gathering *g);
 
-static inline size_t mu_gathering_unit(const mu_gathering *g, uint32_t file, const mu_heightfield *f, uint32_t i,
-                                       uint32_t j) {
+static inline size_t mu_gathering_unit(const mu_gathering *g, uint32_t file, const mu_heightfield *f,
+                                       uint32_t i, uint32_t j) {
     return g->file_count > 1 ? file : (size_t)((uint64_t)i * 4 / f->nx * 4 + (uint64_t)j * 4 / f->ny);
 }
 static inline int mu_gathering_channels(const mu_gathering *g) {
@@ -113,7 +135,12 @@ _Bool mu_gathering_normals(mu_gathering *g, uint32_t file, const mu_heightfield 
 /* Paths from one point of every facet that a view sees (surface_paths.c). */
 _Bool mu_gathering_paths(mu_gathering *g, uint32_t file, const mu_mirrors *mirrors, mu_seen *seen, int upper,
                          const double point[2], mu_error *error);
-/* Eq. (11f) from the groups, F and L once per group; one colour. */
+/* The same of refracted light (surface_through.c), and room for it. */
+_Bool mu_gathering_through(mu_gathering *g, uint32_t file, const mu_heightfield *f, mu_seen *seen, int upper,
+                           const double point[2], mu_error *error);
+_Bool mu_through_make(const mu_gathering *g, mu_seen *s);
+void mu_through_free(mu_through *through);
+/* Eq. (11f) from the groups, F and L once per group; one colour. Reflected or refracted, as the light is (surface_grouped.c). */
 double mu_gathering_grouped(const mu_gathering *g, const mu_seen *seen, uint32_t lamp, int channel);
 
 /* The JSON line on stdout (surface_report.c); false: errno says why. */

@@ -61,16 +61,20 @@ void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[
             }
 }
 
+_Bool mu_group_normal(const mu_group *group, double mean[3]) {
+    const double *n = group->normal, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3 && length > 0; k++) mean[k] = n[k] / length;
+    return length > 0;
+}
+
 double mu_reflect_groups(const mu_group *groups, size_t count, const double w[3],
                          const mu_lighting *lighting) {
     double sum = 0;
     for (size_t k = 0; k < count; k++) {
-        const double *n = groups[k].normal;
-        const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!(length > 0)) continue;
-        const double cosine = (w[0] * n[0] + w[1] * n[1] + w[2] * n[2]) / length;
-        double r[3];
-        for (int c = 0; c < 3; c++) r[c] = 2 * cosine * n[c] / length - w[c]; /* Eq. (12a) */
+        double n[3], r[3];
+        if (!mu_group_normal(&groups[k], n)) continue;
+        const double cosine = w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
+        for (int c = 0; c < 3; c++) r[c] = 2 * cosine * n[c] - w[c]; /* Eq. (12a) */
         sum += groups[k].weight * lighting->fresnel(lighting->context, cosine) *
                lighting->radiance(lighting->context, r);
     }

@@ -35,6 +35,9 @@ typedef struct mu_group {
 void mu_group_facets(const mu_heightfield *f, const double m[4], const double w[3],
                      const uint8_t *const both[2], const mu_directions *d, mu_group *groups);
 
+/* The mean normal, unit; false: an empty group. */
+_Bool mu_group_normal(const mu_group *group, double mean[3]);
+
 /* Eq. (11f) from the groups, F and L asked once per group, at its mean normal. One colour. */
 typedef struct mu_lighting {
     double (*fresnel)(void *context, double cosine);

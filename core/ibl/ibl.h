@@ -53,4 +53,11 @@ typedef enum mu_ibl_shift { MU_IBL_SYMMETRIC, MU_IBL_PRINTED } mu_ibl_shift;
 #undef MU_REAL
 #undef MU_SUFFIX
 
+/* What the axis is made for, of GGX: P22 of slopes (x, y); D cos of micronormals; f cos, with F = 1 and height-correlated
+ * shadowing, of reflected directions; per unit of slope squared, or per steradian. 0 if it is none that numbers hold: a sigma
+ * of 0, a view along the horizon. */
+typedef enum mu_ibl_space { MU_IBL_SLOPES, MU_IBL_NORMALS, MU_IBL_REFLECTED } mu_ibl_space;
+int mu_ibl_density(const mu_ibl_lobe_d *lobe, const double wo[3], mu_ibl_space space, size_t count,
+                   const double *points, double *out);
+
 #endif

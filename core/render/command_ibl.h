@@ -8,6 +8,7 @@
 #include "core/render/document.h"
 
 int mu_command_ibl_axis(int argc, char **argv);
+int mu_command_ibl_plot(int argc, char **argv);
 
 enum { MU_IBL_SAMPLES_MOST = 65536 };
 

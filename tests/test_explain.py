@@ -16,6 +16,7 @@ import tempfile
 import time
 import unittest
 
+import gltf
 from command import MUSURF, ROOT, musurf, strict
 
 LISTED = re.findall(r'^\s+X\([A-Z_]+,\s*"(\w+)",\s*"[^"]+"\)', (ROOT / "core/render/features.h").read_text(), re.M)
@@ -41,6 +42,7 @@ NEEDS = {
     "meshes": {"objects": [TILE]},
     "instances": {"objects": [TILE, TILE]},
     "mesh_tangents": {"objects": [{"mesh": "tile", "material": dict(METAL, transform=[[5, 1], [0, 1]])}]},
+    "poses": {"objects": [{"mesh": "posed", "material": LAMBERT, "pose": {}}], "meshes": {"posed": {"file": "posed.glb"}}},
     "tensions": {"objects": [dict(TILE, material=METAL, tension={"rest": "tile.obj"})]},
     "grids": {"objects": [dict(BALL, grid={"material": LAMBERT})]},
     "two_sided": {"objects": [dict(BALL, two_sided=True)]},
@@ -74,6 +76,10 @@ class Explain(unittest.TestCase):
         (self.folder / "square.ply").write_text(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float age\n"
             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 .1\n1 0 0 .2\n0 1 0 .3\n3 0 1 2\n")
+        w = gltf.Writer()
+        corners = w.add([(0, 0, 0), (1, 0, 0), (0, 1, 0)], bounds=True)
+        (self.folder / "posed.glb").write_bytes(w.finish(scenes=[{"nodes": [0]}], nodes=[{"mesh": 0}], meshes=[
+            {"primitives": [{"attributes": {"POSITION": corners}, "indices": w.add([0, 1, 2], gltf.INT)}]}]))
         (self.folder / "tile.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
 
     def write(self, change, **more):

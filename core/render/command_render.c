@@ -276,7 +276,8 @@ static _Bool keep_inputs(const mu_job *job, mu_error *error) {
 /* The scene with what the command line changes about it. */
 static _Bool read_scene(mu_job *job, mu_error *error) {
     const mu_render_options *options = &job->options;
-    if (!mu_scene_read(&job->scene, options->scene, error)) return 0;
+    const mu_moment moment = {options->frame, options->pose_time};
+    if (!mu_scene_read_at(&job->scene, options->scene, &moment, error)) return 0;
     if (options->width) {
         job->scene.film.width = options->width;
         job->scene.film.height = options->height;

@@ -36,19 +36,6 @@ static _Bool compare(const mu_polygons *a, const mu_polygons *b, mu_error *error
     return 1;
 }
 
-static _Bool cut(mu_deformation *d) {
-    uint32_t scratch[MU_POLYGON_MOST];
-    d->triangles = d->rest.corners - 2 * d->rest.faces;
-    d->corner = malloc(3 * (size_t)d->triangles * sizeof *d->corner);
-    if (!d->corner) return 0;
-    uint32_t *at = d->corner;
-    for (uint32_t f = 0; f < d->rest.faces; f++) {
-        mu_polygons_cut(&d->rest, f, scratch, at);
-        at += 3 * (size_t)(d->rest.first[f + 1] - d->rest.first[f] - 2);
-    }
-    return 1;
-}
-
 static double *spread_uvs(const mu_deformation *d, const mu_polygons *mesh) {
     double *uvs = malloc(6 * (size_t)d->triangles * sizeof *uvs);
     for (size_t i = 0; uvs && i < 3 * (size_t)d->triangles; i++)
@@ -117,11 +104,15 @@ static _Bool gather(mu_deformation *d) {
     return 1;
 }
 
-_Bool mu_deformation_read(mu_deformation *d, const char *rest, const char *deformed, mu_error *error) {
+_Bool mu_deformation_read(mu_deformation *d, const char *rest, const char *deformed, const mu_pose *pose,
+                          mu_error *error) {
+    static const mu_pose bind = {.bind = 1};
     memset(d, 0, sizeof *d);
-    _Bool good = mu_polygons_read(&d->rest, rest, error) && mu_polygons_read(&d->deformed, deformed, error) &&
+    _Bool good = mu_polygons_read(&d->rest, rest ? rest : deformed, rest ? NULL : &bind, error) &&
+                 mu_polygons_read(&d->deformed, deformed, pose, error) &&
                  compare(&d->rest, &d->deformed, error);
-    if (good && !(cut(d) && make_tension(d) && gather(d)))
+    if (good) d->corner = mu_polygons_cut_all(&d->rest, &d->triangles);
+    if (good && !(d->corner && make_tension(d) && gather(d)))
         good = mu_fail(error, "%s: not enough memory for the tension of %u faces", deformed, d->rest.faces);
     if (!good) mu_deformation_free(d);
     return good;

@@ -18,9 +18,10 @@ typedef struct mu_deformation {
     mu_tension *tension;
 } mu_deformation;
 
-/* Both files as polygons.h reads them; fails, with the first difference, if their faces are not the same. */
+/* Both files as polygons.h reads them; fails, with the first difference, if their faces are not the same. pose: of
+ * the deformed one, or NULL; rest: NULL for the bind shape of the deformed one's file. */
 _Bool mu_deformation_read(mu_deformation *deformation, const char *rest, const char *deformed,
-                          mu_error *error);
+                          const mu_pose *pose, mu_error *error);
 void mu_deformation_free(mu_deformation *deformation);
 
 /* A line about what was found besides healthy triangles; false, and nothing in it, if all was well. */

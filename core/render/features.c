@@ -62,6 +62,7 @@ static uint32_t of_object(const mu_scene *scene, uint32_t index) {
             bits |= MU_FEATURE_INSTANCES;
             break;
         }
+    if (scene->meshes[object->mesh].posed) bits |= MU_FEATURE_POSES;
     if (scene->meshes[object->mesh].tension) bits |= MU_FEATURE_TENSIONS;
     if (scene->meshes[object->mesh].tangents) bits |= MU_FEATURE_MESH_TANGENTS;
     return bits | MU_FEATURE_MESHES;

@@ -18,6 +18,7 @@
     X(MESHES,                "meshes",                "reading of mesh files, and Embree triangle geometry")           \
     X(INSTANCES,             "instances",             "a second level of boxes, and rays transformed into it")         \
     X(MESH_TANGENTS,         "mesh_tangents",         "tangents of mesh vertices")                                     \
+    X(POSES,                 "poses",                 "morph targets, bones and animations of mesh files")             \
     X(TENSIONS,              "tensions",              "meshes at rest, and a transform per hit from the deformation, in slots")  \
     X(GRIDS,                 "grids",                 "a second material chosen by texture coordinates")               \
     X(TWO_SIDED,             "two_sided",             "frames turned over when seen from behind")                      \

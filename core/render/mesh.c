@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * mesh.c: triangle meshes from OBJ, PLY and glTF files, read by assimp.
+ * mesh.c: triangle meshes from OBJ, PLY, glTF and FBX files, read by assimp.
  *
  * All meshes of a file become one, each with its node's transformation applied; polygons are cut into
  * triangles, identical vertices joined, points and lines ignored. Coordinates stay as the file has them
@@ -204,8 +204,9 @@ static _Bool has_suffix(const char *file, const char *suffix) {
 
 static _Bool check_format(const char *file, mu_error *error) {
     if (has_suffix(file, ".ply")) return mu_ply_check(file, error);
-    if (has_suffix(file, ".obj") || has_suffix(file, ".gltf") || has_suffix(file, ".glb")) return 1;
-    return mu_fail(error, "%s: not a mesh file; must be .obj, .ply, .gltf or .glb", file);
+    if (has_suffix(file, ".obj") || has_suffix(file, ".gltf") || has_suffix(file, ".glb") || has_suffix(file, ".fbx"))
+        return 1;
+    return mu_fail(error, "%s: not a mesh file; must be .obj, .ply, .gltf, .glb or .fbx", file);
 }
 
 _Bool mu_mesh_read(mu_mesh *mesh, const char *file, mu_mesh_notes *notes, mu_error *error) {
@@ -238,7 +239,7 @@ void mu_mesh_free(mu_mesh *mesh) {
     free(mesh->uvs);
     free(mesh->tangents);
     free(mesh->tension);
-    free(mesh->rest);
+    free(mesh->use);
     for (int i = 0; i < MU_ATTRIBUTES; ++i) free(mesh->attributes[i]);
     free(mesh->indices);
     memset(mesh, 0, sizeof *mesh);

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "core/render/error.h"
+#include "core/render/pose.h"
 
 typedef struct mu_polygons {
     const char *file; /* borrowed */
@@ -24,10 +25,13 @@ typedef struct mu_polygons {
 
 /*
  * OBJ: `v` and `f` lines in their order, in double precision, whatever groups and materials. PLY: its vertices and
- * faces. glTF: the primitives of all nodes one after the other, with their transformations. Points and lines are
+ * faces. glTF and FBX: the primitives of all nodes one after the other, with their transformations, or in a pose
+ * (posed.h; NULL: as they stand there, without targets and bones); an FBX has a vertex per corner. Points and lines are
  * ignored. Fails on files that cannot be read, without faces, or with a vertex that is not finite or beyond 1e9.
  */
-_Bool mu_polygons_read(mu_polygons *polygons, const char *file, mu_error *error);
+_Bool mu_polygons_read(mu_polygons *polygons, const char *file, const mu_pose *pose, mu_error *error);
+/* Whether a file of this name may hold targets, bones and animations. */
+_Bool mu_polygons_can_pose(const char *file);
 void mu_polygons_free(mu_polygons *polygons);
 
 /* The part for OBJ. */
@@ -39,6 +43,9 @@ _Bool mu_polygons_read_obj(mu_polygons *polygons, const char *file, mu_error *er
  * somehow. `scratch`: room for as many numbers as the face has corners.
  */
 void mu_polygons_cut(const mu_polygons *polygons, uint32_t face, uint32_t *scratch, uint32_t *triangles);
+
+/* All faces, one after the other; 3 corners per triangle, to be freed. NULL without memory. */
+uint32_t *mu_polygons_cut_all(const mu_polygons *polygons, uint32_t *triangles);
 
 enum { MU_POLYGON_MOST = 1024 }; /* corners of a face */
 

@@ -4,6 +4,7 @@
  * polygons_cut.c: a face becomes triangles by clipping ears (Meisters, "Polygons have ears", 1975), in the plane of its
  * area vector (Newell's). An ear is a convex corner whose triangle holds no other corner.
  */
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/render/affine.h"
@@ -62,4 +63,15 @@ void mu_polygons_cut(const mu_polygons *polygons, uint32_t face, uint32_t *scrat
         memmove(scratch + ear, scratch + ear + 1, (o.left - ear - 1) * sizeof *scratch);
     }
     memcpy(triangles, scratch, 3 * sizeof *scratch);
+}
+
+uint32_t *mu_polygons_cut_all(const mu_polygons *polygons, uint32_t *triangles) {
+    uint32_t scratch[MU_POLYGON_MOST];
+    *triangles = polygons->corners - 2 * polygons->faces;
+    uint32_t *const corners = malloc((3 * (size_t)*triangles + 1) * sizeof *corners), *at = corners;
+    for (uint32_t f = 0; corners && f < polygons->faces; f++) {
+        mu_polygons_cut(polygons, f, scratch, at);
+        at += 3 * (size_t)(polygons->first[f + 1] - polygons->first[f] - 2);
+    }
+    return corners;
 }

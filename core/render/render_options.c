@@ -9,8 +9,9 @@
 #include <string.h>
 
 #include "core/render/render.h"
+#include "core/render/sequence.h"
 
-enum { OUTPUT, SPP, TIME, NOISE, THREADS, SEED, SIZE, RESUME, PNG, EXPLAIN, PROGRESS, QUIET };
+enum { OUTPUT, SPP, TIME, NOISE, THREADS, SEED, SIZE, FRAME, POSE_TIME, RESUME, PNG, EXPLAIN, PROGRESS, QUIET };
 
 static const mu_option option_list[] = {
     {"o", "OUT.exr", "the image, written when it is complete and whole"},
@@ -20,6 +21,8 @@ static const mu_option option_list[] = {
     {"threads", "N", "threads (default: one per processor); the image does not depend on it"},
     {"seed", "S", "seed of the random numbers (default: the scene's)"},
     {"size", "WxH", "pixels, instead of the scene's"},
+    {"frame", "N", "which of numbered meshes, name_####.ply (default: the first there is)"},
+    {"pose-time", "S", "seconds of the animations of poses, instead of the scene's"},
     {"resume", NULL, "go on from OUT.resume; without such a file start from nothing"},
     {"png", "FILE", "an 8-bit sRGB preview as well"},
     {"explain", NULL, "what the scene needs and what is left out, on stdout; without -o that is all"},
@@ -58,6 +61,17 @@ static _Bool read_number(const mu_options *given, double max, double *out) {
     if (end == given->value || *end || errno == ERANGE || !(value > 0) || !(value <= max)) {
         mu_refuse(given->usage, "--%s is \"%s\"; a number above 0 and at most %g is needed", given->name,
                   given->value, max);
+        return 0;
+    }
+    *out = value;
+    return 1;
+}
+
+static _Bool read_time(const mu_options *given, double *out) {
+    char *end;
+    const double value = strtod(given->value, &end);
+    if (end == given->value || *end || !(value >= 0) || !(value <= 1e9)) {
+        mu_refuse(given->usage, "--%s is \"%s\"; a number from 0 to 1e9 is needed", given->name, given->value);
         return 0;
     }
     *out = value;
@@ -104,7 +118,7 @@ static _Bool ends_in(const char *text, const char *tail) {
 }
 
 static _Bool take(mu_render_options *options, int met, const mu_options *given) {
-    uint64_t threads;
+    uint64_t threads, frame;
     switch (met) {
     case OUTPUT:
         options->output = given->value;
@@ -120,6 +134,12 @@ static _Bool take(mu_render_options *options, int met, const mu_options *given) 
         return read_number(given, 1e6, &options->noise);
     case SIZE:
         return mu_render_size(given, &options->width, &options->height);
+    case FRAME:
+        if (!mu_options_unsigned(given, 0, MU_LAST_FRAME, &frame)) return 0;
+        options->frame = (long long)frame;
+        return 1;
+    case POSE_TIME:
+        return read_time(given, &options->pose_time);
     case RESUME:
         return options->resume = 1;
     case EXPLAIN:
@@ -150,7 +170,7 @@ _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, 
     const mu_usage *usage = &mu_render_usage;
     mu_options given = mu_options_begin(usage, argc, argv);
     int met;
-    *options = (mu_render_options){.threads = mu_processors()};
+    *options = (mu_render_options){.threads = mu_processors(), .frame = MU_NO_FRAME, .pose_time = -1};
     *exit = MU_EXIT_REFUSED;
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met < 0 && met != MU_OPTIONS_OPERAND) {

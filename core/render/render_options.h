@@ -13,6 +13,8 @@ typedef struct mu_render_options {
     uint32_t threads;
     uint32_t width, height; /* 0: not given */
     uint64_t seed;
+    long long frame;                  /* MU_NO_FRAME: not given */
+    double pose_time;                 /* -1: not given */
     _Bool seed_given, resume, explain, quiet;
     enum { MU_PROGRESS_AUTO, MU_PROGRESS_JSON, MU_PROGRESS_NONE } progress;
 } mu_render_options;

@@ -9,6 +9,7 @@
 
 #include "core/render/mesh.h"
 #include "core/render/scene_read.h"
+#include "core/render/sequence.h"
 
 static _Bool is_table(const mu_place *place, mu_error *error) {
     if (!place->value || json_is_object(place->value)) return 1;
@@ -42,22 +43,42 @@ static _Bool read_all(mu_reader *reader) {
            mu_read_attributes(reader) && mu_read_lights(reader);
 }
 
-_Bool mu_scene_from(mu_scene *scene, const mu_document *document, mu_error *error) {
+static _Bool check_moment(const mu_reader *reader) {
+    if (reader->moment.frame != MU_NO_FRAME && !reader->has_sequence)
+        return mu_fail(reader->error, "%s: has no numbered meshes, such as name_####.ply, of which to choose a frame",
+                       reader->document->name);
+    if (reader->moment.pose_time >= 0 && !reader->has_animation)
+        return mu_fail(reader->error, "%s: has no \"pose\" with an animation, of which to choose a time",
+                       reader->document->name);
+    return 1;
+}
+
+static const mu_moment own_moment = {MU_NO_FRAME, -1};
+
+static _Bool read_from(mu_scene *scene, const mu_document *document, const mu_moment *moment, mu_error *error) {
     memset(scene, 0, sizeof *scene);
     mu_reader reader = {
-        .scene = scene, .document = document, .root = mu_place_root(document), .error = error};
+        .scene = scene, .document = document, .root = mu_place_root(document), .moment = *moment, .error = error};
     reader.materials = mu_place_member(&reader.root, "materials");
     reader.meshes = mu_place_member(&reader.root, "meshes");
-    const _Bool ok = read_all(&reader);
+    const _Bool ok = read_all(&reader) && check_moment(&reader);
     if (!ok) mu_scene_free(scene);
     return ok;
 }
 
+_Bool mu_scene_from(mu_scene *scene, const mu_document *document, mu_error *error) {
+    return read_from(scene, document, &own_moment, error);
+}
+
 _Bool mu_scene_read(mu_scene *scene, const char *file, mu_error *error) {
+    return mu_scene_read_at(scene, file, &own_moment, error);
+}
+
+_Bool mu_scene_read_at(mu_scene *scene, const char *file, const mu_moment *moment, mu_error *error) {
     mu_document document;
     memset(scene, 0, sizeof *scene);
     if (!mu_document_read(&document, file, error)) return 0;
-    const _Bool ok = mu_scene_from(scene, &document, error);
+    const _Bool ok = read_from(scene, &document, moment, error);
     mu_document_free(&document);
     return ok;
 }

@@ -56,7 +56,8 @@ typedef struct mu_mesh {
     float *uvs;       /* 2 each */
     float *tangents;  /* 4 each */
     float *tension;   /* 4 each: M of the deformation from the mesh at rest, in the triangles' frames (tension.h) */
-    char *rest;       /* the file of that mesh */
+    _Bool posed;
+    char *use; /* the pose and the mesh at rest that make it more than its file, as one text; NULL: none */
     float *attributes[MU_ATTRIBUTES]; /* 1 each: of the scene's list; NULL where no material asks for it */
     uint32_t *indices;
 } mu_mesh;
@@ -114,8 +115,16 @@ typedef struct mu_scene {
     uint32_t attribute_count;
 } mu_scene;
 
+/* What a command line chooses of a scene that moves. */
+typedef struct mu_moment {
+    long long frame;  /* of numbered meshes (sequence.h); MU_NO_FRAME: the first there is */
+    double pose_time; /* of animations, in seconds; negative: the scene's own */
+} mu_moment;
+
 /* Reads and checks everything, loads meshes, compiles materials. Warnings go to stderr, one line each. */
 _Bool mu_scene_read(mu_scene *scene, const char *file, mu_error *error);
+/* The same at a moment; fails if the scene has nothing that it chooses. */
+_Bool mu_scene_read_at(mu_scene *scene, const char *file, const mu_moment *moment, mu_error *error);
 /* The same of a document in memory, whose values may have been changed since it was read; it is not kept. */
 struct mu_document;
 _Bool mu_scene_from(mu_scene *scene, const struct mu_document *document, mu_error *error);

@@ -11,32 +11,106 @@
 
 #include "core/render/mesh.h"
 #include "core/render/scene_read.h"
+#include "core/render/sequence.h"
 
-/* The mesh as it is, or deformed from the one at rest in the file at `rest`. */
-static _Bool read_file(const mu_reader *reader, const mu_place *place, const char *path, const mu_place *rest,
-                       mu_mesh *mesh, mu_mesh_notes *notes) {
+/* The file that a place names; of a numbered sequence the one of the moment's frame, or the first. To be freed. */
+static char *mesh_path(mu_reader *reader, const mu_place *place) {
+    char *path = mu_scene_path(reader, json_string_value(place->value)), *one = NULL;
     mu_error reason = {.text = ""};
-    char found[768] = "";
-    if (!rest->value)
-        return mu_mesh_read(mesh, path, notes, &reason) ||
-               mu_place_fail(place, reader->error, "%s", reason.text);
-    char *rest_path = mu_scene_path(reader, json_string_value(rest->value));
-    if (!rest_path) return mu_fail(reader->error, "not enough memory for the scene");
-    const _Bool good = mu_mesh_read_deformed(mesh, rest_path, path, notes, found, sizeof found, &reason);
-    free(rest_path);
-    if (*found) mu_scene_warn(reader, rest, found);
-    return good || mu_place_fail(rest, reader->error, "%s", reason.text);
+    long long *frames = NULL, frame = reader->moment.frame;
+    size_t count;
+    if (!path) mu_fail(reader->error, "not enough memory for the scene");
+    if (!path || !mu_sequence_is(path)) return path;
+    reader->has_sequence = 1;
+    if (frame == MU_NO_FRAME && mu_sequence_list(path, &frames, &count, &reason)) frame = frames[0];
+    free(frames);
+    if (frame != MU_NO_FRAME && !(one = mu_sequence_file(path, frame)))
+        mu_fail(reader->error, "not enough memory for the scene");
+    else if (!one)
+        mu_place_fail(place, reader->error, "%s", reason.text);
+    free(path);
+    return one;
 }
 
-static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, const mu_place *rest,
+/* What an object asks of a mesh besides its name. */
+typedef struct mu_mesh_use {
+    const mu_place *pose, *tension; /* their values are NULL where it asks nothing */
+    mu_place rest;
+    _Bool bind;
+    char *text, *path; /* all that tells uses apart; the file at rest */
+} mu_mesh_use;
+
+static void free_use(mu_mesh_use *use) {
+    free(use->text);
+    free(use->path);
+}
+
+/* "tension": {"rest": file} or "bind". */
+static _Bool read_tension(mu_reader *reader, mu_mesh_use *use) {
+    static const char *const words[] = {"bind", NULL};
+    const char *file;
+    size_t choice;
+    use->rest = mu_place_member(use->tension, "rest");
+    if (!use->tension->value) return 1;
+    if (json_is_string(use->tension->value)) {
+        use->bind = mu_place_choice(use->tension, words, &choice, reader->error);
+        return use->bind && (use->pose->value ||
+                             mu_place_fail(use->tension, reader->error,
+                                           "is of the shape that a \"pose\" deforms, but there is none"));
+    }
+    if (!mu_place_only(use->tension, mu_scene_keys(MU_KEYS_TENSION), reader->error) ||
+        !mu_place_string(&use->rest, &file, reader->error))
+        return 0;
+    use->path = mesh_path(reader, &use->rest);
+    return use->path != NULL;
+}
+
+static _Bool read_use(mu_reader *reader, mu_mesh_use *use) {
+    if (!read_tension(reader, use)) return 0;
+    if (!use->pose->value && !use->tension->value) return 1;
+    json_t *all = json_object();
+    if (use->pose->value) json_object_set(all, "pose", use->pose->value);
+    if (use->tension->value)
+        json_object_set_new(all, "rest", use->bind ? json_true() : json_string(use->path));
+    use->text = json_dumps(all, JSON_COMPACT | JSON_SORT_KEYS);
+    json_decref(all);
+    return use->text || mu_fail(reader->error, "not enough memory for the scene");
+}
+
+/* The mesh as it is, in a pose, or deformed. */
+static _Bool read_file(mu_reader *reader, const mu_place *place, const char *path, const mu_mesh_use *use,
+                       mu_mesh *mesh, mu_mesh_notes *notes) {
+    const mu_place *asking = use->rest.value ? &use->rest : use->pose->value ? use->pose : use->tension;
+    mu_error reason = {.text = ""};
+    char found[768] = "";
+    mu_pose pose;
+    if (!use->text)
+        return mu_mesh_read(mesh, path, notes, &reason) ||
+               mu_place_fail(place, reader->error, "%s", reason.text);
+    if (use->pose->value && !mu_pose_read(use->pose, &pose, reader->error)) return 0;
+    if (use->pose->value && pose.animation) {
+        reader->has_animation = 1;
+        if (reader->moment.pose_time >= 0) pose.time = reader->moment.pose_time;
+    }
+    const mu_mesh_source source = {.file = path,
+                                   .pose = use->pose->value ? &pose : NULL,
+                                   .tension = use->tension->value != NULL,
+                                   .rest = use->path};
+    const _Bool good = mu_mesh_read_deformed(mesh, &source, notes, found, sizeof found, &reason);
+    if (use->pose->value) mu_pose_free(&pose);
+    if (*found) mu_scene_warn(reader, asking, found);
+    return good || mu_place_fail(asking, reader->error, "%s", reason.text);
+}
+
+static _Bool load(mu_reader *reader, const mu_place *definition, const char *name, mu_mesh_use *use,
                   uint32_t *out) {
     const mu_place place = mu_place_member(definition, "file");
     mu_scene *scene = reader->scene;
     mu_mesh mesh;
     mu_mesh_notes notes;
-    char *path = mu_scene_path(reader, json_string_value(place.value));
-    if (!path) return mu_fail(reader->error, "not enough memory for the scene");
-    const _Bool ok = read_file(reader, &place, path, rest, &mesh, &notes);
+    char *path = mesh_path(reader, &place);
+    if (!path) return 0;
+    const _Bool ok = read_file(reader, &place, path, use, &mesh, &notes);
     free(path);
     if (!ok) return 0;
     if (notes.dropped) {
@@ -47,6 +121,9 @@ static _Bool load(mu_reader *reader, const mu_place *definition, const char *nam
     if (notes.uvs_lost)
         mu_scene_warn(reader, &place, "only some of its parts have texture coordinates; they are left out");
     mesh.name = strdup(name);
+    mesh.posed = use->pose->value != NULL;
+    mesh.use = use->text;
+    use->text = NULL;
     if (!mesh.name ||
         !mu_append((void **)&scene->meshes, &scene->mesh_count, sizeof *scene->meshes, reader->error)) {
         mu_mesh_free(&mesh);
@@ -57,31 +134,29 @@ static _Bool load(mu_reader *reader, const mu_place *definition, const char *nam
     return 1;
 }
 
-/* Whether a mesh read before is this one, from the same mesh at rest. */
-static _Bool is_same(const mu_reader *reader, const mu_mesh *mesh, const char *name, const mu_place *rest) {
-    if (strcmp(mesh->name, name) || !mesh->rest != !rest->value) return 0;
-    if (!mesh->rest) return 1;
-    char *path = mu_scene_path(reader, json_string_value(rest->value));
-    const _Bool same = path && !strcmp(path, mesh->rest);
-    free(path);
-    return same;
+/* Whether a mesh read before is this one. */
+static _Bool is_same(const mu_mesh *mesh, const char *name, const mu_mesh_use *use) {
+    return !strcmp(mesh->name, name) && !mesh->use == !use->text &&
+           (!mesh->use || !strcmp(mesh->use, use->text));
 }
 
-_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *tension, uint32_t *out) {
-    const char *name, *file;
-    const mu_place rest = mu_place_member(tension, "rest");
-    if (!mu_place_string(place, &name, reader->error)) return 0;
-    if (tension->value && (!mu_place_only(tension, mu_scene_keys(MU_KEYS_TENSION), reader->error) ||
-                           !mu_place_string(&rest, &file, reader->error)))
-        return 0;
+static _Bool find_or_load(mu_reader *reader, const mu_place *place, const char *name, mu_mesh_use *use,
+                          uint32_t *out) {
     for (uint32_t i = 0; i < reader->scene->mesh_count; ++i)
-        if (is_same(reader, &reader->scene->meshes[i], name, &rest)) {
-            *out = i;
-            return 1;
-        }
+        if (is_same(&reader->scene->meshes[i], name, use)) return *out = i, 1;
     const mu_place definition = mu_place_member(&reader->meshes, name);
     if (!definition.value) return mu_fail_unknown(place, reader->meshes.value, "mesh", reader->error);
-    return load(reader, &definition, name, &rest, out);
+    return load(reader, &definition, name, use, out);
+}
+
+_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *pose, const mu_place *tension,
+                   uint32_t *out) {
+    const char *name;
+    mu_mesh_use use = {.pose = pose, .tension = tension};
+    if (!mu_place_string(place, &name, reader->error)) return 0;
+    const _Bool good = read_use(reader, &use) && find_or_load(reader, place, name, &use, out);
+    free_use(&use);
+    return good;
 }
 
 _Bool mu_check_meshes(mu_reader *reader) {
@@ -93,8 +168,8 @@ _Bool mu_check_meshes(mu_reader *reader) {
         if (!mu_place_only(&definition, mu_scene_keys(MU_KEYS_MESH), reader->error)) return 0;
         const mu_place place = mu_place_member(&definition, "file");
         if (!mu_place_string(&place, &file, reader->error)) return 0;
-        char *path = mu_scene_path(reader, file);
-        if (!path) return mu_fail(reader->error, "not enough memory for the scene");
+        char *path = mesh_path(reader, &place);
+        if (!path) return 0;
         struct stat status;
         const _Bool there = !access(path, R_OK) && !stat(path, &status);
         const _Bool good = there && S_ISREG(status.st_mode);

@@ -11,7 +11,7 @@ static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *obj
     static const char *const shapes[] = {"rectangle", "sphere", NULL};
     mu_error *error = reader->error;
     const mu_place shape = mu_place_member(place, "shape"), mesh = mu_place_member(place, "mesh"),
-                   tension = mu_place_member(place, "tension");
+                   pose = mu_place_member(place, "pose"), tension = mu_place_member(place, "tension");
     size_t choice;
     if (!json_is_object(place->value)) return mu_place_only(place, mu_scene_keys(MU_KEYS_RECTANGLE), error);
     if (shape.value && mesh.value)
@@ -19,10 +19,10 @@ static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *obj
     if (mesh.value) {
         object->shape = MU_MESH;
         return mu_place_only(place, mu_scene_keys(MU_KEYS_MESH_OBJECT), error) &&
-               mu_read_mesh(reader, &mesh, &tension, &object->mesh);
+               mu_read_mesh(reader, &mesh, &pose, &tension, &object->mesh);
     }
     if (!shape.value) { /* a misspelt key is the likelier mistake */
-        static const char *const any[] = {"shape",    "mesh",      "tension",   "size", "radius",
+        static const char *const any[] = {"shape",    "mesh",      "pose",      "tension",   "size", "radius",
                                           "material", "transform", "two_sided", "grid", NULL};
         if (!mu_place_only(place, any, error)) return 0;
         return mu_place_fail(place, error, "needs a \"shape\" (\"rectangle\" or \"sphere\") or a \"mesh\"");

@@ -20,6 +20,7 @@ typedef enum mu_key_set {
     MU_KEYS_RECTANGLE,
     MU_KEYS_SPHERE,
     MU_KEYS_MESH_OBJECT,
+    MU_KEYS_POSE,
     MU_KEYS_TENSION,
     MU_KEYS_GRID,
     MU_KEYS_STEP,
@@ -39,6 +40,8 @@ typedef struct mu_reader {
     mu_scene *scene;
     const mu_document *document;
     mu_place root, materials, meshes; /* `value` is NULL where the scene has no such table */
+    mu_moment moment;
+    _Bool has_sequence, has_animation; /* among the meshes that objects use */
     mu_error *error;
 } mu_reader;
 
@@ -69,8 +72,9 @@ _Bool mu_read_lights(mu_reader *reader); /* after the objects: adds those of rec
 _Bool mu_read_material(mu_reader *reader, const mu_place *place, const char *owner, _Bool deforming, uint32_t *out);
 /* Named materials that nothing uses are checked all the same, then dropped. */
 _Bool mu_check_unused_materials(mu_reader *reader);
-/* `tension`: {"rest": file}, or without value. */
-_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *tension, uint32_t *out);
+/* `pose`: as pose.h has it; `tension`: {"rest": file} or "bind"; or without value. */
+_Bool mu_read_mesh(mu_reader *reader, const mu_place *place, const mu_place *pose, const mu_place *tension,
+                   uint32_t *out);
 _Bool mu_check_meshes(mu_reader *reader);
 /* Tangents for those meshes that a material with a direction stands on. */
 _Bool mu_make_scene_tangents(mu_reader *reader);

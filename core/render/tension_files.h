@@ -13,8 +13,8 @@
  * its first chart, in the order of the faces; further charts follow apart.
  */
 
-/* One JSON object: "summary", and with `all` "faces", "vertices", "seams". */
-void mu_tension_write_json(const mu_deformation *d, _Bool all, FILE *out);
+/* One JSON object: "frame" unless MU_NO_FRAME, "summary", and with `all` "faces", "vertices", "seams". */
+void mu_tension_write_json(const mu_deformation *d, long long frame, _Bool all, FILE *out);
 
 /* The deformed mesh: its vertices in their order, then those of further charts; properties x y z, s t if there are
  * texture coordinates, m00 m01 m10 m11; the faces. Binary, little-endian, double. False: out of memory. */

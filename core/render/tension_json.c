@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "core/render/sequence.h"
 #include "core/render/tension_files.h"
 #include "core/tension/stretch.h"
 
@@ -67,8 +68,10 @@ static void put_seams(const mu_deformation *d, FILE *out) {
     }
 }
 
-void mu_tension_write_json(const mu_deformation *d, _Bool all, FILE *out) {
-    fputs("{\"summary\": ", out);
+void mu_tension_write_json(const mu_deformation *d, long long frame, _Bool all, FILE *out) {
+    putc('{', out);
+    if (frame != MU_NO_FRAME) fprintf(out, "\"frame\": %lld, ", frame);
+    fputs("\"summary\": ", out);
     put_summary(d, out);
     if (all) {
         fputs(", \"faces\": [", out);

@@ -48,9 +48,12 @@ static int uv_direction(const double *uvs, uint32_t triangle, double xy[2], int 
     return UV_GOOD;
 }
 
+/* But for what the float of another format leaves of them. */
 static _Bool same_uvs(const mu_tension_input *input, uint32_t triangle) {
-    return !memcmp(input->rest_uv + 6 * (size_t)triangle, input->deformed_uv + 6 * (size_t)triangle,
-                   6 * sizeof(double));
+    const double *a = input->rest_uv + 6 * (size_t)triangle, *b = input->deformed_uv + 6 * (size_t)triangle;
+    for (int k = 0; k < 6; k++)
+        if (!(fabs(a[k] - b[k]) <= 0x1p-22 * fmax(1, fabs(a[k])))) return 0;
+    return 1;
 }
 
 /* What the two textures say of a triangle. */

@@ -15,6 +15,13 @@ geometry: deps
 run-geometry: all
 	@BUILD=$(BUILD) $(PYTHON) scripts/geometry-pair -o $(BUILD)/geometry $(if $(QUICK),--quick)
 
+# Figures 6, 7 and 8 of the paper and a balloon of 24 frames: makes the meshes, renders scenes/figures.
+.PHONY: figures run-figures
+figures: deps
+	@$(MAKE) --no-print-directory run-figures
+run-figures: all
+	@BUILD=$(BUILD) $(PYTHON) scripts/figures -o $(BUILD)/figures $(if $(QUICK),--quick)
+
 # What accuracy costs on explicit surfaces: error against time and memory, over grid, points, realisations, images, tracers.
 costs: deps
 	@$(MAKE) --no-print-directory run-costs

@@ -9,6 +9,7 @@ import copy
 import json
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -19,7 +20,7 @@ from command import ROOT, musurf, strict
 
 SCHEMA = json.loads((ROOT / "scenes/scene.schema.json").read_text())
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
-SCENES = sorted(path for path in (ROOT / "scenes").glob("*.json") if path.name != "scene.schema.json")
+SCENES = sorted(path for path in (ROOT / "scenes").glob("**/*.json") if path.name != "scene.schema.json")
 BEYOND_A_SCHEMA = ("there is no", "singular", "zero vector", "same point", "line of sight", "at most one light",
                    "must not be zero", "too many", "No such file", "last row", "is missing; the studio", "within 1e+09",
                    "needs texture coordinates", "no transform that may vary", "not a mesh file")
@@ -79,6 +80,10 @@ def within_material(container):
 
 
 class Scenes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        subprocess.run([sys.executable, str(ROOT / "scripts" / "meshes")], check=True, stdout=subprocess.DEVNULL)  # of scenes/figures
+
     def test_the_schema_is_one(self):
         jsonschema.Draft202012Validator.check_schema(SCHEMA)
 

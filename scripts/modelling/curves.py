@@ -7,13 +7,13 @@ from . import mesh
 
 
 def through(points, at):
-    """The curve through the points (rows of any length) at parameters in [0, 1]: cubic Hermite pieces whose parameter is the length of the
-    polygon in the first two or three columns, tangents those of the parabola through each point and its neighbours."""
+    """The curve through three or more points (rows of any length) at parameters in [0, 1]: cubic Hermite pieces whose parameter is the length
+    of the polygon in the first three columns, tangents those of the parabola through each point and its neighbours."""
     p = np.asarray(points, float)
-    knot = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(p[:, :min(3, p.shape[1])], axis=0), axis=1))])
+    knot = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(p[:, :3], axis=0), axis=1))])
     step, slope = np.diff(knot), np.diff(p, axis=0) / np.diff(knot)[:, None]
     inner = (step[1:, None] * slope[:-1] + step[:-1, None] * slope[1:]) / (step[1:] + step[:-1])[:, None]
-    tangent = np.concatenate([[1.5 * slope[0] - 0.5 * inner[0]], inner, [1.5 * slope[-1] - 0.5 * inner[-1]]])
+    tangent = np.concatenate([[2 * slope[0] - inner[0]], inner, [2 * slope[-1] - inner[-1]]])
     x = np.asarray(at) * knot[-1]
     k = np.clip(np.searchsorted(knot, x, side="right") - 1, 0, len(step) - 1)
     t = ((x - knot[k]) / step[k])[:, None]

@@ -11,6 +11,7 @@ import tempfile
 import unittest
 import unittest.mock
 
+import exr
 from command import musurf
 
 GOOD = """{
@@ -132,6 +133,27 @@ class BadScenes(unittest.TestCase):
         self.refused('{"objects": [3]}', "3", ["object"], "$.objects[0]")
         self.refused("[]", "[]")
         self.refused("", "")
+
+    def test_material_files(self):
+        """What is wrong with a file is said where it is named; what is wrong in it, with its own name, line and column."""
+        apart = self.folder.parent / f"{self.folder.name}.json"  # beside the folder: this one is looked through
+        self.addCleanup(apart.unlink, missing_ok=True)
+        named = f'{{"file": "../{apart.name}"}}'
+        scene = GOOD.replace('{"material": "template.lambert", "reflectance": 0.6}', named)
+        self.refused(scene, f'"../{apart.name}"', ["cannot be opened", "No such file"], "$.materials.clay.file")
+        self.refused(scene.replace('.json"}', '.json", "reflectance": 1}'), '"reflectance"', ["reflectance"], "$.materials.clay.reflectance")
+        for text, where in (("{", ":1:"), ('{"ndf": "ggx"}', ":1:1: $"), ("[]", ":1:1: $: "), ('{"file": "x.json"}', ":1:10: $.file: "),
+                            ('{"material": "template.lambert",\n "reflectance": 2}', ":2:17: $.reflectance: ")):
+            apart.write_text(text)
+            done = self.render(scene)
+            self.assertEqual((done.returncode, done.err.count("\n")), (2, 1), done.err)
+            self.assertIn(apart.name + where, done.err)
+        apart.write_text('{"$schema": "x", "description": "clay", "material": "template.lambert", "reflectance": 0.6}')
+        self.assertEqual(self.render(scene).returncode, 0)
+        channels = exr.read(self.image)[1]
+        self.assertEqual(self.render(GOOD).returncode, 0)
+        for name, pixels in exr.read(self.image)[1].items():
+            self.assertTrue((pixels == channels[name]).all(), name)
 
     def test_meshes(self):
         for text, word in (("", "tile.obj"), ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", "tile.obj"),

@@ -30,7 +30,7 @@ FULL = {
     "camera": {"type": "orthographic", "position": [1, -4, 2], "target": [0, 0, 0], "up": [0, 0, 1], "height": 3},
     "film": {"width": 4, "height": 4, "filter": "box", "radius": 0.5, "exposure": 1, "pixels": "float"},
     "integrator": {"samples": 1, "depth": 2, "roulette": 3, "seed": 4, "light_sampling": True, "light_candidates": 9},
-    "materials": {"clay": {"material": "template.lambert", "reflectance": 0.6}},
+    "materials": {"clay": {"material": "template.lambert", "reflectance": 0.6}, "apart": {"file": "apart.json"}},
     "meshes": {"tile": {"file": "tile.obj"}},
     "objects": [
         {"shape": "sphere", "radius": 0.5, "material": "clay", "two_sided": True,
@@ -107,6 +107,7 @@ class Scenes(unittest.TestCase):
             scene_file = pathlib.Path(folder) / "scene.json"
             (pathlib.Path(folder) / "tile.obj").write_text(
                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
+            (pathlib.Path(folder) / "apart.json").write_text('{"description": "apart", "material": "template.lambert"}')
             for number in range(250):
                 scene = spoil(rng)
                 if number == 0:

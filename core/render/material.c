@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/render/material_file.h"
 #include "core/render/varying.h"
 
 /* What the plugin says while compiling goes to the place of the parameter it speaks of. */
@@ -150,9 +151,11 @@ static void measure_sampler(const musurf_material_type *type, mu_settings *setti
         if (strcmp(*choice, "auto") == 0) mu_settings_add(settings, p)->text = *choice;
 }
 
-static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
-                           _Bool to_render, mu_error *error) {
-    static const char *const reserved[] = {"material", "jacobian", NULL};
+static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
+                         _Bool to_render, mu_error *error) {
+    static const char *const here[] = {"material", "jacobian", NULL},
+                      *const in_file[] = {"material", "jacobian", "$schema", "description", NULL};
+    const char *const *reserved = place->parent ? here : in_file;
     *material = (mu_material){.transform = {1, 0, 0, 1}};
     if (!json_is_object(place->value)) return mu_place_only(place, reserved, error);
 
@@ -181,6 +184,19 @@ static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_
         good = (material->varying = mu_varying_make(&settings, material->compiled, place, error)) != NULL;
     mu_settings_free(&settings);
     if (!good) mu_material_free(material);
+    return good;
+}
+
+static _Bool read_material(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
+                           _Bool to_render, mu_error *error) {
+    if (!mu_names_material_file(place))
+        return read_object(material, plugins, place, deforming, to_render, error);
+    mu_document document;
+    if (!mu_material_file_read(&document, place, error)) return 0;
+    const mu_place root = mu_place_root(&document);
+    const _Bool good = read_object(material, plugins, &root, deforming, to_render, error);
+    material->digest ^= mu_material_file_digest(&document);
+    mu_document_free(&document);
     return good;
 }
 

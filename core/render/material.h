@@ -6,7 +6,7 @@
  * "material": "vendor.name" names a type of vendor_material.so, looked for in $MUSURF_PLUGIN_PATH, beside the
  * program, and in ../lib/musurf relative to it. Everything else in the object is a parameter of that table, except
  * the keys that the renderer itself serves ("jacobian"). What may vary may have a source (source.h) instead of a value.
- * Warnings of a plugin go to stderr.
+ * Warnings of a plugin go to stderr. {"file": name} stands for the material in that file (material_file.h).
  */
 #ifndef MU_MATERIAL_H
 #define MU_MATERIAL_H

@@ -6,6 +6,7 @@ What a surface cannot have, the facets' reflectance or a sampler, is left out of
 what makes the microsurface, every parameter of distribution and map, is left in, so that the core composes M, too.
 """
 import json
+import pathlib
 
 import numpy as np
 
@@ -78,8 +79,11 @@ def materials(path, size, seed):
     chosen, left = [], {}
     for name, material in found.items():
         try:
+            if isinstance(material, dict) and "file" in material and "material" not in material:
+                with open(pathlib.Path(path).parent / material["file"], encoding="utf-8") as file:
+                    material = {k: v for k, v in json.load(file).items() if k not in ("$schema", "description")}
             chosen.append(surface(name, material, size, seed))
-        except (SceneError, TypeError, ValueError) as error:
+        except (SceneError, OSError, TypeError, ValueError, AttributeError) as error:
             left[name] = str(error)
     if not chosen:
         raise SceneError(f"{path}: none of its materials can be checked: " + "; ".join(f"{k}: {v}" for k, v in left.items()))

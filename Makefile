@@ -76,6 +76,8 @@ install: all
 	$(INSTALL) -m 644 $(PUBLIC_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf
 	$(INSTALL) -m 644 $(DISTRIBUTION_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf
 	$(INSTALL) -m 644 $(wildcard scenes/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	$(INSTALL) -d $(DESTDIR)$(PREFIX)/share/musurf/scenes/materials
+	$(INSTALL) -m 644 $(wildcard scenes/materials/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes/materials
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' scripts/musurf.pc.in \
 	    > $(DESTDIR)$(PREFIX)/lib/pkgconfig/musurf.pc
 

@@ -132,7 +132,8 @@ class Messages(unittest.TestCase):
         path = pathlib.Path(FOLDER.name, "bare.ply")
         mesh.write_ply(str(path))
         bare = {"type": "ply", "filename": str(path)}
-        for shape, transform, told in ((bare, "1 0 0 1", False), (bare, "2 0 0 1", True), ({"type": "cube"}, "2 0 0 1", False)):
+        for shape, transform, told in ((bare, "1 0 0 1", False), (bare, "2 0 0 1", True), ({"type": "cube"}, "2 0 0 1", False),
+                                       ({"type": "rectangle"}, "2 0 0 1", False)):
             scene = mi.load_dict({"type": "scene", "integrator": {"type": "path", "max_depth": 2}, "light": {"type": "constant"},
                                   "mesh": {**shape, "bsdf": {"type": "musurf", "transform": transform}},
                                   "sensor": {"type": "perspective", "to_world": mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0]),

@@ -14,4 +14,4 @@ mitsuba: deps
 test-mitsuba: mitsuba
 	@$(MAKE) --no-print-directory run-test-mitsuba
 run-test-mitsuba: all
-	@BUILD=$(BUILD) $(PYTHON) tests/run mitsuba
+	@FULL=1 BUILD=$(BUILD) $(PYTHON) tests/run mitsuba

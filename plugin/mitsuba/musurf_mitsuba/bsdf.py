@@ -143,9 +143,8 @@ def make(mi):
             # si.shape[i] may come as a mere Shape, whose parameters tell what it is
             for index in np.unique(found, return_index=True)[1]:
                 shape = si.shape[int(index)]
-                if shape is None or not shape.is_mesh():
-                    continue
-                if len(mi.traverse(shape).get("vertex_texcoords", ())) == 0:
+                of_shape = mi.traverse(shape) if shape is not None else {}
+                if "faces" in of_shape and len(of_shape.get("vertex_texcoords", ())) == 0:
                     self.warn_once(f"{self.given.table.type_id}: shading depends on the tangent, and shape \"{shape.id()}\" has no texture "
                                    "coordinates to take it from: directions on it are arbitrary")
 

@@ -37,3 +37,35 @@ void mu_covariance_map(const double s[3], const double mean[4], double m[4]) {
     const double h[4] = {scale * (s[2] + r), -scale * s[1], -scale * s[1], scale * (s[0] + r)};
     for (int i = 0; i < 4; i++) m[i] = h[i / 2 * 2] * q[i % 2] + h[i / 2 * 2 + 1] * q[2 + i % 2];
 }
+
+/* xx^2, xx xy, xy^2, xx yy, xy yy, yy^2 of each part. */
+static void squares(const float *s, float *out) {
+    int n = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++) out[n++] = s[i] * s[j];
+}
+
+static double spread(const float *s, const float *e) {
+    const double xx = (double)s[0], xy = (double)s[1], yy = (double)s[2], det = xx * yy - xy * xy;
+    const double a = yy / det, b = -xy / det, c = xx / det; /* S^-1 */
+    const double trace = a * a * (double)e[0] + 4 * a * b * (double)e[1] +
+                         2 * (b * b + a * c) * (double)e[2] + 2 * b * b * (double)e[3] +
+                         4 * b * c * (double)e[4] + c * c * (double)e[5];
+    return fmax(trace / 2 - 1, 0);
+}
+
+_Bool mu_covariance_spread(mu_mipmap *picture) {
+    mu_mipmap moments;
+    const int width = picture->level[0].width, height = picture->level[0].height, n = picture->channels;
+    if (!mu_mipmap_make(&moments, width, height, 6, picture->wrap)) return 0;
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        squares(picture->texels + i * (size_t)n + 4, moments.texels + 6 * i);
+    mu_mipmap_build(&moments);
+    const size_t count = mu_mipmap_bytes(picture) / ((size_t)n * sizeof(float));
+    for (size_t i = 0; i < count; i++) {
+        float *const texel = picture->texels + i * (size_t)n;
+        texel[7] = (float)spread(texel + 4, moments.texels + 6 * i);
+    }
+    mu_mipmap_free(&moments);
+    return 1;
+}

@@ -11,8 +11,17 @@
 #ifndef MU_COVARIANCE_H
 #define MU_COVARIANCE_H
 
+#include "core/render/mipmap.h"
+
 /* S of M, rows; not finite where M is singular. */
 void mu_covariance_of(const double m[4], double s[3]);
+
+/*
+ * Of the levels of a picture of S (numbers 4 to 6 of each texel): how much S varies within a texel, into number 7:
+ * E tr((S^-1 s)^2) / 2 - 1 of the parts s of mean S. 0: not at all; of alpha alone it is the relative variance of alpha^2.
+ * False without memory.
+ */
+_Bool mu_covariance_spread(mu_mipmap *picture);
 
 /* The M of covariance `s`, turned as `mean` is; `mean` itself, to the bit, where that has this covariance within what
  * rounding S to float leaves. */

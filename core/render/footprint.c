@@ -11,7 +11,7 @@ static float pixel_side(const mu_camera *camera, const mu_film_settings *film) {
 mu_beam mu_beam_of_pixel(const mu_camera *camera, const mu_film_settings *film, mu_vec3 p) {
     float side = pixel_side(camera, film);
     if (camera->kind == MU_PERSPECTIVE) side *= mu_dot(mu_sub(p, camera->position), camera->forward);
-    return (mu_beam){mu_scale(camera->right, side), mu_scale(camera->up, side)};
+    return (mu_beam){mu_scale(camera->right, side), mu_scale(camera->up, side), 1};
 }
 
 mu_cone mu_cone_of_pixel(const mu_camera *camera, const mu_film_settings *film) {
@@ -22,7 +22,7 @@ mu_cone mu_cone_of_pixel(const mu_camera *camera, const mu_film_settings *film) 
 mu_beam mu_beam_of_cone(float width, mu_vec3 direction) {
     const mu_vec3 aside = fabsf(direction.x) < 0.5f ? mu_v3(1, 0, 0) : mu_v3(0, 1, 0);
     const mu_vec3 x = mu_normalise(mu_cross(direction, aside)), y = mu_cross(direction, x);
-    return (mu_beam){mu_scale(x, width), mu_scale(y, width)};
+    return (mu_beam){mu_scale(x, width), mu_scale(y, width), 1};
 }
 
 /* Half of `side`, along the ray onto the tangent plane, by least squares in the derivatives of p by u and v. */

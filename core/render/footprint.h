@@ -18,6 +18,7 @@
 /* What is seen at once, where the ray arrives: a parallelogram of these two sides, in world space, across the ray. */
 typedef struct mu_beam {
     mu_vec3 x, y;
+    float share; /* of a side of the pixel, that one of its samples stands for: 1 / sqrt(their number) */
 } mu_beam;
 
 /* The side of the square seen where the ray starts, and by how much that grows per unit of length. */

@@ -18,6 +18,7 @@ typedef struct mu_tracer { /* borrowed, read-only, shared by threads */
     const mu_geometry *geometry;
     const mu_lights *lights;
     _Bool footprints; /* some material asks for them */
+    uint32_t samples; /* per pixel, as planned: what one of them stands for; 0: 1 */
 } mu_tracer;
 
 typedef struct mu_radiance {

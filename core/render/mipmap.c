@@ -126,32 +126,49 @@ static void ellipse(const double a[4], double radius[2], double along[2]) {
     along[0] = cos(angle), along[1] = sin(angle);
 }
 
-void mu_mipmap_at(const mu_mipmap *mipmap, const double uv[2], const double axes[4], double *out) {
+/* The coarsest level whose footprint, two of its texels, varies by no more; -1 if that of level `from` does not. */
+static int kept_within(const mu_mipmap *p, const double uv[2], double from, const mu_mipmap_limit *limit) {
+    const double last = p->levels - 1;
+    double found[MU_MIPMAP_CHANNELS];
+    trilinear(p, fmin(from + 1, last), uv[0], uv[1], found);
+    if (found[limit->channel] <= limit->most) return -1;
+    int level = (int)fmin(ceil(from), last - 1);
+    for (; level > 0; level--) {
+        bilinear(p, level + 1, uv[0], uv[1], found);
+        if (found[limit->channel] <= limit->most) break;
+    }
+    return level > 0 ? level : 0;
+}
+
+/* The mean of `probes` along the ellipse. */
+static void along_axis(const mu_mipmap *p, const double uv[2], double level, int probes, const double step[2],
+                       double *out) {
+    double sum[MU_MIPMAP_CHANNELS] = {0}, probe[MU_MIPMAP_CHANNELS];
+    for (int i = 0; i < probes; i++) {
+        const double t = (2 * i + 1) / (double)probes - 1;
+        trilinear(p, level, uv[0] + t * step[0], uv[1] + t * step[1], probe);
+        for (int c = 0; c < p->channels; c++) sum[c] += probe[c] - out[c];
+    }
+    for (int c = 0; c < p->channels; c++) out[c] += sum[c] / probes;
+}
+
+void mu_mipmap_at(const mu_mipmap *mipmap, const double uv[2], const double axes[4],
+                  const mu_mipmap_limit *limit, double *out) {
     const double width = mipmap->level[0].width, height = mipmap->level[0].height, last = mipmap->levels - 1;
-    if (!axes) {
-        bilinear(mipmap, 0, uv[0], uv[1], out);
-        return;
-    }
-    const double texels[4] = {axes[0] * width, axes[1] * height, axes[2] * width, axes[3] * height};
-    double radius[2], along[2];
-    ellipse(texels, radius, along);
-    if (!(radius[0] < 1e9)) {
-        bilinear(mipmap, (int)last, uv[0], uv[1], out);
-        return;
-    }
-    if (!(radius[0] > 0)) radius[1] = 0;
+    double radius[2] = {0, 0}, along[2] = {0, 0};
+    if (axes)
+        ellipse((const double[4]){axes[0] * width, axes[1] * height, axes[2] * width, axes[3] * height},
+                radius, along);
+    if (axes && !(radius[0] < 1e9)) radius[0] = radius[1] = 1e9;
+    if (!(radius[0] > 0)) radius[0] = radius[1] = 0;
     /* A texel of the level is half as wide as the footprint: with the probe's own width (variance 1/4 of a texel's
      * square) that is a footprint's, w^2 / 16 for the w^2 / 12 of a box. */
     const double least = fmax(radius[1], 1);
     const int probes = (int)fmin(fmax(ceil(radius[0] / least), 1), MOST_PROBES);
     const double level = fmin(fmax(log2(fmax(least, radius[0] / probes)), 0), last);
-    trilinear(mipmap, level, uv[0], uv[1], out);
-    if (probes == 1) return;
-    double sum[MU_MIPMAP_CHANNELS] = {0}, probe[MU_MIPMAP_CHANNELS];
-    for (int i = 0; i < probes; i++) {
-        const double t = radius[0] * ((2 * i + 1) / (double)probes - 1);
-        trilinear(mipmap, level, uv[0] + t * along[0] / width, uv[1] + t * along[1] / height, probe);
-        for (int c = 0; c < mipmap->channels; c++) sum[c] += probe[c] - out[c];
-    }
-    for (int c = 0; c < mipmap->channels; c++) out[c] += sum[c] / probes;
+    const int kept = limit && radius[0] > 0.5 ? kept_within(mipmap, uv, log2(fmax(radius[0], 1)), limit) : -1;
+    trilinear(mipmap, kept >= 0 ? fmin(kept, level) : level, uv[0], uv[1], out);
+    if (probes > 1 && kept < 0)
+        along_axis(mipmap, uv, level, probes,
+                   (const double[2]){radius[0] * along[0] / width, radius[0] * along[1] / height}, out);
 }

@@ -37,8 +37,16 @@ void mu_mipmap_build(mu_mipmap *mipmap);
 void mu_mipmap_free(mu_mipmap *mipmap);
 size_t mu_mipmap_bytes(const mu_mipmap *mipmap);
 
-/* [any] The mean over the parallelogram of these two half-axes about (u, v); all of the picture where they are not
- * finite; NULL: the finest level, between its texels. */
-void mu_mipmap_at(const mu_mipmap *mipmap, const double uv[2], const double axes[4], double *out);
+/* One of the numbers of each texel may say how much the texel's part of the picture varies. */
+typedef struct mu_mipmap_limit {
+    int channel;
+    double most; /* that may be averaged */
+} mu_mipmap_limit;
+
+/* [any] The mean over the parallelogram of these two half-axes about (u, v), all of the picture where they are not
+ * finite; NULL: the finest level, between its texels. limit, or NULL: where a texel as large as the parallelogram varies by
+ * more, the mean about (u, v) of as much as does not. */
+void mu_mipmap_at(const mu_mipmap *mipmap, const double uv[2], const double axes[4],
+                  const mu_mipmap_limit *limit, double *out);
 
 #endif

@@ -140,10 +140,13 @@ static _Bool survives(mu_random *random, float throughput[3], float compressed) 
 }
 
 /* What the walk sees at once where it arrived; its cone goes on from there. */
-static mu_beam beam_at(const mu_scene *scene, uint32_t event, const mu_hit *hit, mu_walk *walk) {
+static mu_beam beam_at(const mu_tracer *tracer, uint32_t event, const mu_hit *hit, mu_walk *walk) {
+    const mu_scene *scene = tracer->scene;
     walk->cone.width += walk->cone.spread * hit->distance;
-    return event == 0 ? mu_beam_of_pixel(&scene->camera, &scene->film, hit->p)
-                      : mu_beam_of_cone(walk->cone.width, walk->ray.direction);
+    mu_beam beam = event == 0 ? mu_beam_of_pixel(&scene->camera, &scene->film, hit->p)
+                              : mu_beam_of_cone(walk->cone.width, walk->ray.direction);
+    if (tracer->samples) beam.share = 1 / sqrtf((float)tracer->samples);
+    return beam;
 }
 
 /* What happens where the walk's ray arrived: at `hit`, or, if that is NULL, out of the scene. True: walk->ray
@@ -177,7 +180,7 @@ static _Bool arrive(const mu_tracer *tracer, const mu_path_options *options, mu_
 
     mu_shading shading;
     mu_beam beam;
-    if (tracer->footprints) beam = beam_at(scene, event, hit, walk);
+    if (tracer->footprints) beam = beam_at(tracer, event, hit, walk);
     mu_shading_begin(&shading, scene, hit, mu_scale(walk->ray.direction, -1),
                      tracer->footprints ? &beam : NULL, scratch);
     if (!shading.lobes) return 0; /* black, but it did block the light */

@@ -16,7 +16,9 @@ mu_render_end mu_render_scene(mu_film *film, const mu_scene *scene, const mu_geo
     const mu_tracer tracer = {.scene = scene,
                               .geometry = geometry,
                               .lights = lights,
-                              .footprints = (mu_features_of(scene) & (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0};
+                              .footprints = (mu_features_of(scene) & (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0,
+                              .samples = limits->samples < MU_MOST_SAMPLES ? limits->samples
+                                                                           : scene->integrator.samples};
     mu_render_plan plan = *limits;
     plan.sample = sample;
     plan.context = &tracer;

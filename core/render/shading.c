@@ -33,11 +33,15 @@ static void attributes_at(const mu_scene *scene, const mu_hit *hit, float *out) 
 /* Parameters that have sources, into slots; true: they come down to an M, which is put into those of "transform". */
 static _Bool values(const mu_scene *scene, const mu_material *material, const mu_hit *hit, mu_vec3 wo,
                     const mu_beam *beam, float *slots) {
+    const float share = beam ? beam->share : 1;
     float footprint[6] = {hit->uv[0], hit->uv[1], INFINITY, INFINITY, INFINITY, INFINITY};
     float attributes[MU_ATTRIBUTES] = {0};
-    if (beam && material->varying->pictured) mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
+    if (beam && material->varying->pictured) {
+        mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
+        for (int i = 2; i < 6; i++) footprint[i] *= share; /* the pixel's other samples see the rest */
+    }
     if (material->varying->pointwise) attributes_at(scene, hit, attributes);
-    mu_varying_at(material->varying, material->compiled, footprint, attributes, slots, slots + MU_SLOT_TRANSFORM);
+    mu_varying_at(material->varying, material->compiled, footprint, share * share, attributes, slots, slots + MU_SLOT_TRANSFORM);
     return material->varying->map != NULL;
 }
 

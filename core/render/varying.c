@@ -21,12 +21,13 @@ static void pointwise(const mu_varying *v, const float uv[2], const float *attri
     }
 }
 
-static void look_up(const mu_varying *v, const float footprint[6], double *out) {
+static void look_up(const mu_varying *v, const float footprint[6], float most, double *out) {
+    const mu_mipmap_limit limit = {7, (double)most};
     const mu_placement *p = &v->placement;
     double uv[2], axes[4];
     for (int i = 0; i < 2; i++) uv[i] = (double)footprint[i] * p->scale[i] + p->offset[i];
     for (int i = 0; i < 4; i++) axes[i] = (double)footprint[2 + i] * p->scale[i % 2];
-    mu_mipmap_at(&v->mipmap, uv, p->filtered ? axes : NULL, out);
+    mu_mipmap_at(&v->mipmap, uv, p->filtered ? axes : NULL, v->map ? &limit : NULL, out);
 }
 
 /* m = a m, where a is what stands before the pictures. */
@@ -38,11 +39,11 @@ static void put_before(const float a[4], double m[4]) {
     }
 }
 
-void mu_varying_at(const mu_varying *v, const musurf_material *material, const float footprint[6],
+void mu_varying_at(const mu_varying *v, const musurf_material *material, const float footprint[6], float most,
                    const float *attributes, float *slots, float m[4]) {
     double found[MU_MIPMAP_CHANNELS], whole[4];
     if (v->pointwise) pointwise(v, footprint, attributes, slots);
-    if (v->pictured) look_up(v, footprint, found);
+    if (v->pictured) look_up(v, footprint, most, found);
     if (v->map && v->pictured) {
         mu_covariance_map(found + 4, found, whole);
         for (int i = 0; i < 4; i++)

@@ -56,7 +56,7 @@ static void values_at(const mu_source *s, int x, int y, int width, int height, f
         const float *at = p->texels + ((size_t)y * (size_t)width + (size_t)x) * (size_t)p->channels;
         for (int c = 0; c < p->channels; c++) found[c] = (double)at[c];
     } else {
-        mu_mipmap_at(p, (const double[2]){(x + 0.5) / width, 1 - (y + 0.5) / height}, NULL, found);
+        mu_mipmap_at(p, (const double[2]){(x + 0.5) / width, 1 - (y + 0.5) / height}, NULL, NULL, found);
     }
     if (s->kind == MU_SOURCE_DIRECTION) found[0] = atan2(found[1], found[0]);
     for (int k = 0; k < s->count; k++) out[k] = (float)found[k];
@@ -70,6 +70,8 @@ static _Bool put_map(const mu_varying *v, const musurf_material *material, const
     mu_covariance_of(whole, s);
     for (int i = 0; i < 4; i++) texel[i] = m[i];
     for (int i = 0; i < 3; i++) texel[4 + i] = (float)s[i];
+    texel[7] = 0;
+    texel[7] = 0;
     return isfinite(texel[4]) && isfinite(texel[5]) && isfinite(texel[6]) && texel[4] + texel[6] > 0;
 }
 
@@ -96,7 +98,7 @@ static _Bool fill(mu_varying *v, const musurf_material *material, const mu_place
                     x, y, (double)texel[0], (double)texel[1], (double)texel[2], (double)texel[3]);
         }
     mu_mipmap_build(&v->mipmap);
-    return 1;
+    return !v->map || mu_covariance_spread(&v->mipmap) || mu_place_fail(place, error, "not enough memory");
 }
 
 static _Bool compose(mu_varying *v, const musurf_material *material, const mu_place *place, mu_error *error) {
@@ -111,7 +113,7 @@ static _Bool compose(mu_varying *v, const musurf_material *material, const mu_pl
     if (!v->map && numbers > MU_MIPMAP_CHANNELS)
         return mu_place_fail(place, error, "has %d numbers from pictures; at most %d are possible", numbers,
                              MU_MIPMAP_CHANNELS);
-    if (!mu_mipmap_make(&v->mipmap, width, height, v->map ? 7 : numbers, v->placement.wrap))
+    if (!mu_mipmap_make(&v->mipmap, width, height, v->map ? 8 : numbers, v->placement.wrap))
         return mu_place_fail(place, error, "not enough memory for %d x %d texels", width, height);
     if (!fill(v, material, place, error)) return 0;
     for (size_t i = 0; i < v->count; i++) mu_mipmap_free(&v->sources[i].picture);

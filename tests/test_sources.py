@@ -179,11 +179,11 @@ class Directions(Pictures):
 
 
 class Filtering(Pictures):
-    """A plate under a sun alone, so that nothing but the texture is sampled; 20 texels wide are seen by a pixel."""
+    """A plate under a sun alone, so that nothing but the texture is sampled; a pixel sees some 45 texels in a row."""
 
     def plate(self, material, samples):
         scene = {"camera": {"position": [0, -3, 2.6], "target": [0, 0, 0], "fov": 34},
-                 "film": {"width": 32, "height": 24, "pixels": "float", "filter": "box"}, "integrator": {"samples": samples, "depth": 1},
+                 "film": {"width": 20, "height": 15, "pixels": "float", "filter": "box"}, "integrator": {"samples": samples, "depth": 1},
                  "objects": [{"shape": "rectangle", "material": material}],
                  "lights": [{"type": "directional", "direction": [0.1, 3, 2.7], "irradiance": [1, 1, 1]}]}
         (self.folder / "plate.json").write_text(json.dumps(scene))
@@ -194,7 +194,7 @@ class Filtering(Pictures):
     def test_few_samples_do_not_alias_and_many_converge(self):
         """Against 4096 unfiltered samples: one filtered sample is nearer than one unfiltered; where roughness varies, by far,
         once what one sample does to a plate without texture is taken off; of 16 neither kind is worse than the other by more
-        than scatter; and of 1024 both are the same, for a 32nd of a pixel is less than a texel."""
+        than scatter; and of 1024 both are the same, for two of a pixel is less than a texel."""
         rng = np.random.default_rng(3)
         angle = rng.uniform(-0.6, 0.6, (128, 128))
         strong, mild = np.where(rng.random((128, 128)) < 0.5, 0.1, 0.4), rng.uniform(0.2, 0.3, (128, 128))

@@ -194,7 +194,7 @@ class Filtering(Pictures):
     def test_few_samples_do_not_alias_and_many_converge(self):
         """Against 4096 unfiltered samples: one filtered sample is nearer than one unfiltered; where roughness varies, by far,
         once what one sample does to a plate without texture is taken off; of 16 neither kind is worse than the other by more
-        than scatter; and of 1024 both are the same, for two of a pixel is less than a texel."""
+        than scatter; and of 1024 both are the same, for neighbours differ by more than 1/1024."""
         rng = np.random.default_rng(3)
         angle = rng.uniform(-0.6, 0.6, (128, 128))
         strong, mild = np.where(rng.random((128, 128)) < 0.5, 0.1, 0.4), rng.uniform(0.2, 0.3, (128, 128))

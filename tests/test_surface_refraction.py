@@ -81,7 +81,7 @@ class Facets(above.AgainstNumpy):
             for v, view in zip(VIEWS, answer["views"]):
                 with self.subTest(eta=eta, view=v):
                     self.check(v, eta, lights, view["transmission"], view["reflection"][0])
-        self.assertGreater(sorted(self.lit)[1], 0.01, self.lit)  # of four
+        self.assertGreaterEqual(sum(f > 0.01 for f in self.lit), 3, self.lit)  # of four
 
     def check(self, v, eta, lights, given, reflection):
         seen, projected = self.seen(v), self.area * np.maximum(0, self.normal @ v)

@@ -35,7 +35,7 @@ def channel_list(value):
 
 def header_of(data):
     magic, version = struct.unpack_from("<II", data)
-    assert magic == 20000630 and version == 2, "no single-part scanline EXR file"
+    assert magic == 20000630 and version in (2, 0x202), "no single-part EXR file"
     header, at = {}, 8
     while data[at]:
         name, at = text(data, at)
@@ -88,6 +88,30 @@ def read(file):
                 at_block += kind.itemsize * width
     return header, {name: plane if plane.dtype.kind == "u" else plane.astype(numpy.float32)
                     for name, plane in planes.items()}
+
+
+def read_mip(file):
+    """A mip map of float channels in tiles, levels rounded down: (header, [channels of each level])."""
+    data = pathlib.Path(file).read_bytes()
+    header, at = header_of(data)
+    side_x, side_y, mode = struct.unpack("<IIB", header["tiles"])
+    assert mode == 1 and data[4:8] == struct.pack("<I", 0x202) and header["compression"] == 3
+    width, height = header["dataWindow"][2] + 1, header["dataWindow"][3] + 1
+    levels = []
+    while not levels or levels[-1][0] * levels[-1][1] > 1:
+        levels.append((max(width >> len(levels), 1), max(height >> len(levels), 1)))
+    names = [name for name, _ in header["channels"]]
+    images = [{name: numpy.full((h, w), numpy.nan, numpy.float32) for name in names} for w, h in levels]
+    count = sum(-(-w // side_x) * -(-h // side_y) for w, h in levels)
+    for offset in struct.unpack_from(f"<{count}Q", data, at):
+        x, y, level, same, size = struct.unpack_from("<5i", data, offset)
+        assert level == same
+        w, h = (min(side, whole - k * side) for side, whole, k in zip((side_x, side_y), levels[level], (x, y)))
+        block = unzip(data[offset + 20:offset + 20 + size], 4 * w * h * len(names))
+        values = numpy.frombuffer(block, "<f4").reshape(h, len(names), w)
+        for k, name in enumerate(names):
+            images[level][name][y * side_y:y * side_y + h, x * side_x:x * side_x + w] = values[:, k]
+    return header, images
 
 
 def write(file, channels):

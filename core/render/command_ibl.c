@@ -11,18 +11,22 @@
 #include "core/render/subcommand.h"
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
-static const mu_usage usage = {"ibl", "axis|plot ...",
-                               "Image-based lighting: where a glossy, anisotropic material looks into its "
-                               "environment, by the major axis of its\n"
-                               "lobe (Cocco, Zanni, Chermain 2024).\n",
-                               no_options,
-                               "  axis        closest and farthest points, the axis above the horizon, "
-                               "samples; see musurf ibl axis --help\n"
-                               "  plot        these as a picture; see musurf ibl plot --help\n"};
+static const mu_usage usage = {
+    "ibl", "axis|plot|prefilter ...",
+    "Image-based lighting: where a glossy, anisotropic material looks into its "
+    "environment, by the major axis of its\n"
+    "lobe (Cocco, Zanni, Chermain 2024).\n",
+    no_options,
+    "  axis        closest and farthest points, the axis above the horizon, "
+    "samples; see musurf ibl axis --help\n"
+    "  plot        these as a picture; see musurf ibl plot --help\n"
+    "  prefilter   an environment blurred for every roughness; see musurf ibl prefilter --help\n"};
 
 int mu_command_ibl(int argc, char **argv) {
-    static const mu_subcommand list[] = {
-        {"axis", mu_command_ibl_axis}, {"plot", mu_command_ibl_plot}, {NULL, NULL}};
+    static const mu_subcommand list[] = {{"axis", mu_command_ibl_axis},
+                                         {"plot", mu_command_ibl_plot},
+                                         {"prefilter", mu_command_ibl_prefilter},
+                                         {NULL, NULL}};
     return mu_run_subcommand(&usage, list, argc, argv);
 }
 

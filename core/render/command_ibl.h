@@ -9,6 +9,7 @@
 
 int mu_command_ibl_axis(int argc, char **argv);
 int mu_command_ibl_plot(int argc, char **argv);
+int mu_command_ibl_prefilter(int argc, char **argv);
 
 enum { MU_IBL_SAMPLES_MOST = 65536 };
 

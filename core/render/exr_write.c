@@ -77,7 +77,8 @@ static exr_result_t put_lines(exr_context_t exr, const mu_exr_image *image, mu_e
     return code;
 }
 
-_Bool mu_exr_write(const char *file, const mu_exr_image *image, mu_error *error) {
+_Bool mu_exr_file(const char *file, exr_result_t (*write)(exr_context_t exr, const void *context),
+                  const void *context, mu_error *error) {
     mu_output output;
     if (!mu_output_open(&output, file, error)) return 0;
     exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -86,19 +87,28 @@ _Bool mu_exr_write(const char *file, const mu_exr_image *image, mu_error *error)
     start.write_fn = take;
     exr_context_t exr = NULL;
     exr_result_t code = exr_start_write(&exr, file, EXR_WRITE_FILE_DIRECTLY, &start);
-    const _Bool started = !code;
-    int32_t lines = 0;
-    code = code ? code : put_head(exr, image);
-    code = code ? code : exr_get_scanlines_per_chunk(exr, 0, &lines);
-    mu_exr_element *block =
-        code ? NULL : calloc((size_t)lines * image->width * image->channel_count, sizeof *block);
-    if (!code) code = block ? put_lines(exr, image, block, (uint32_t)lines) : EXR_ERR_OUT_OF_MEMORY;
-    free(block);
-    if (started) {
+    if (!code) {
+        code = write(exr, context);
         const exr_result_t last = exr_finish(&exr); /* writes the table of blocks */
         code = code ? code : last;
     }
     if (!code || output.trouble) return mu_output_commit(&output, error);
     mu_output_discard(&output);
     return mu_fail(error, "%s: cannot be written: %s", file, exr_get_default_error_message(code));
+}
+
+static exr_result_t put_image(exr_context_t exr, const void *context) {
+    const mu_exr_image *image = context;
+    int32_t lines = 0;
+    exr_result_t code = put_head(exr, image);
+    code = code ? code : exr_get_scanlines_per_chunk(exr, 0, &lines);
+    if (code) return code;
+    mu_exr_element *block = calloc((size_t)lines * image->width * image->channel_count, sizeof *block);
+    code = block ? put_lines(exr, image, block, (uint32_t)lines) : EXR_ERR_OUT_OF_MEMORY;
+    free(block);
+    return code;
+}
+
+_Bool mu_exr_write(const char *file, const mu_exr_image *image, mu_error *error) {
+    return mu_exr_file(file, put_image, image, error);
 }

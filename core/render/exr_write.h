@@ -40,6 +40,24 @@ typedef struct mu_exr_image {
 /* By the rule of output.h. */
 _Bool mu_exr_write(const char *file, const mu_exr_image *image, mu_error *error);
 
+/* The file around what `write` puts into it: header, blocks. By the rule of output.h. */
+_Bool mu_exr_file(const char *file, exr_result_t (*write)(exr_context_t exr, const void *context),
+                  const void *context, mu_error *error);
+
+/* RGB of floats as a mip map: tiles of 64 x 64, ZIP, sizes halved and rounded down to 1 x 1 (exr_mip.c). */
+typedef struct mu_exr_mip {
+    const char *part;
+    uint32_t width, height, levels;
+    const float *const *pixels; /* of each level, row by row from the top */
+    exr_result_t (*head)(exr_context_t exr, const void *context);
+    const void *context;
+} mu_exr_mip;
+
+_Bool mu_exr_write_mip(const char *file, const mu_exr_mip *mip, mu_error *error);
+
+/* A text attribute of a file's first part; false if there is none of that value: no file, no EXR, another text. */
+_Bool mu_exr_has_text(const char *file, const char *name, const char *text);
+
 /* A text attribute; none if `text` is NULL. */
 exr_result_t mu_exr_put_text(exr_context_t exr, const char *name, const char *text);
 

@@ -62,3 +62,11 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
         digest = add_file(digest, plugin);
     return digest;
 }
+
+uint64_t mu_digest_file(uint64_t digest, const char *file) {
+    return add_file(digest, file);
+}
+
+uint64_t mu_digest_text(uint64_t digest, const char *text) {
+    return add(digest, text, strlen(text));
+}

@@ -10,4 +10,8 @@
  * of materials, plugins (the files' bytes), the seed and the version of musurf. Against mistakes, not against malice. */
 uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed);
 
+/* `digest` changed by the bytes of a file, or of a text. */
+uint64_t mu_digest_file(uint64_t digest, const char *file);
+uint64_t mu_digest_text(uint64_t digest, const char *text);
+
 #endif

@@ -4,18 +4,18 @@
  * albedo.c: makes the tables of albedo.h, from the very surface that they complete, as fine as the definition asks: a
  * patch is halved along an axis until the values midway between its nodes differ from what its nodes say by no more than
  * half of what E may be off, either axis adding its part. A kink halves with the cells, all else quarters; what is midway
- * between nodes is computed to be compared, so that every cell of the finished patch was tested. Where halving has to end
- * before (ALBEDO_HALVINGS, or memory), `unsure` says by how much.
+ * between nodes is computed to be compared, so that every cell of the finished patch was tested; of tables that stand between
+ * others (of blurring, of a grid) that a kink halves is trusted, which saves half of the work. Where halving has to end before
+ * (ALBEDO_HALVINGS, or memory), `unsure` says by how much.
  */
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
-#include "core/bsdf/singular.h"
 
 #if MU_REAL_BITS == 24
 
 /* Walks that tell where light leaves; nodes along a side of a patch at most. */
 enum { WALKS = 2048, SIDE = (1 << ALBEDO_HALVINGS) + 1 };
-static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
+static const float smallest = 1e-12f; /* singular value of L, lest it leave float's range */
 static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
 /* One patch while it grows. */
@@ -46,11 +46,13 @@ double mu_albedo_core(const albedo_source *s, const closure *c) {
 static float evaluate(const patch_maker *m, double u, double s) {
     float w[3];
     closure c;
-    mu_albedo_direction(m->table, m->quadrant, (float)((m->column + u) / m->table->columns),
+    mu_albedo_direction(m->table, &m->table->frame, m->quadrant, (float)((m->column + u) / m->table->columns),
                         (float)albedo_s(m->table, (m->row + s) / ALBEDO_ROWS), w);
     for (int k = 0; k < 3; k++) w[k] *= m->turn;
     if (!bind_source(m->source, w, &c)) return 1;
-    const double allowed = fmin(m->source->error / 8, 1e-3);
+    if (m->source->slopes && c.kernel->traits & HAS_JUMPS)
+        return fmaxf(1 - mu_albedo_of_slopes(&c, m->source->slopes), least);
+    const double allowed = fmin(m->source->error / 4, 1e-3);
     return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed), least);
 }
 
@@ -103,6 +105,7 @@ static float grow(patch_maker *m, size_t most) {
         if (!isotropic && left[axis] > 4 * wanted)
             done[!axis] = 0; /* new rows have to be seen along the other axis */
         left[axis] /= 2;
+        if (m->source->trusting && left[axis] <= wanted) done[axis] = 1;
     }
     return fmaxf(left[0], left[1]) > wanted ? left[0] + left[1] : 0;
 }
@@ -152,22 +155,38 @@ static double share_above(const albedo_source *source) {
     return all > 0 ? above / all : 0.5;
 }
 
-/* L = diag(a, b) R from V: turned to the axes of M, and what is rougher than 1 along one is bounded. */
+/* L = diag(a, b) R from V: turned to the axes of M, those of V^T V; and what is rougher than 1 along one is bounded. */
+float mu_albedo_lay(const float v[4], mu_albedo_frame *f) {
+    const float plus = hypotf(v[0] + v[3], v[1] - v[2]), minus = hypotf(v[0] - v[3], v[1] + v[2]);
+    const float large = fmaxf((plus + minus) / 2, FLT_MIN),
+                n[4] = {v[0] / large, v[1] / large, v[2] / large, v[3] / large};
+    const float ratio = fmaxf((float)fabs((double)n[0] * (double)n[3] - (double)n[1] * (double)n[2]), smallest);
+    /* twice the axes' angle, and the half of it that does not cancel */
+    const float p = n[0] * n[0] + n[2] * n[2] - n[1] * n[1] - n[3] * n[3],
+                q = 2 * (n[0] * n[1] + n[2] * n[3]), r = hypotf(p, q), root = sqrtf((r + fabsf(p)) / 2);
+    float c = 1, s = 0;
+    if (r > 0) {
+        const float other = fabsf(q) / (2 * root), length = sqrtf(r);
+        c = (p >= 0 ? root : other) / length, s = -copysignf(p >= 0 ? other : root, q) / length;
+    }
+    const float a = fminf(fmaxf(large, smallest), 1), b = fminf(fmaxf(large * ratio, smallest), 1);
+    *f = (mu_albedo_frame){.to = {a * c, -a * s, b * s, b * c},
+                           .from = {c / a, s / b, -s / a, c / b},
+                           .det = a * b,
+                           .along = sqrtf(ratio)};
+    f->k = b / a / f->along;
+    return large;
+}
+
 static void lay(const closure *c, mu_albedo *t) {
     const map *m = &c->map;
-    const double z = (double)m->view_z, rows[4] = {(double)m->view[0] / z, (double)m->view[1] / z,
-                                                   (double)m->view[2] / z, (double)m->view[3] / z};
-    const singular v = singular_of(rows);
-    const double a = fmin(fmax(v.large, smallest), 1), b = fmin(fmax(fabs(v.small), smallest), 1);
-    const double turn = (v.sum - v.difference) / 2, cosine = cos(turn), sine = sin(turn);
-    const double to[4] = {a * cosine, -a * sine, b * sine, b * cosine},
-                 from[4] = {cosine / a, sine / b, -sine / a, cosine / b};
-    for (int i = 0; i < 4; i++) t->to[i] = (float)to[i], t->from[i] = (float)from[i];
-    t->det = (float)(a * b), t->along = (float)sqrt(fmax(fabs(v.small), smallest * v.large) / v.large),
-    t->k = (float)(b / a) / t->along;
+    const float v[4] = {m->view[0] / m->view_z, m->view[1] / m->view_z, m->view[2] / m->view_z,
+                        m->view[3] / m->view_z};
+    mu_albedo_lay(v, &t->frame);
+    const int isotropic = t->frame.along >= 1 - 5e-7f;
     const int level = m->tilt[0] == 0 && m->tilt[1] == 0 && !(c->kernel->traits & ANISOTROPIC);
     t->quadrants = level ? 1 : 4;
-    t->columns = level && v.large - fabs(v.small) <= 1e-6 * v.large ? 1 : ALBEDO_COLUMNS;
+    t->columns = level && isotropic ? 1 : ALBEDO_COLUMNS;
 }
 
 /* n by which 8 steps of S say E best, at two azimuths. */

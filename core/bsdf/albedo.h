@@ -50,11 +50,14 @@ typedef struct mu_albedo_side {
 } mu_albedo_side;
 
 typedef struct mu_albedo {
-    float to[4], from[4], det, k, along; /* L, its inverse, |det L|; sqrt(B/A) */
-    int roots;                           /* n */
-    int quadrants, columns;              /* 1 or 4; 1 or ALBEDO_COLUMNS */
-    mu_albedo_side side[2];              /* above; below too if the surface transmits */
+    mu_albedo_frame frame;  /* of the M that it was made for */
+    int roots;              /* n */
+    int quadrants, columns; /* 1 or 4; 1 or ALBEDO_COLUMNS */
+    mu_albedo_side side[2]; /* above; below too if the surface transmits */
 } mu_albedo;
+
+/* The frame of V = s M^-1; returns A. */
+float mu_albedo_lay(const float v[4], mu_albedo_frame *out);
 
 /* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. */
 typedef struct albedo_place {
@@ -70,10 +73,10 @@ static inline double albedo_s(const mu_albedo *t, double row) {
     return t->quadrants == 1 ? row : row * row;
 }
 
-static inline albedo_place albedo_locate(const mu_albedo *t, const float w[3]) {
-    const float x = t->to[0] * w[0] + t->to[1] * w[1], y = t->to[2] * w[0] + t->to[3] * w[1];
-    const float r = sqrtf(x * x + y * y), n = r + w[2], ax = t->k * fabsf(x), ay = fabsf(y);
-    const float u = ax + ay > 0 ? ay / (ax + ay) : 0.5f, across = t->k * u;
+static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_frame *f, const float w[3]) {
+    const float x = f->to[0] * w[0] + f->to[1] * w[1], y = f->to[2] * w[0] + f->to[3] * w[1];
+    const float r = sqrtf(x * x + y * y), n = r + w[2], ax = f->k * fabsf(x), ay = fabsf(y);
+    const float u = ax + ay > 0 ? ay / (ax + ay) : 0.5f, across = f->k * u;
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
     const float still = w[2] * (n + r) / (n * n); /* 1 - (r / n)² */
     float rest = still, part = 1;
@@ -81,8 +84,8 @@ static inline albedo_place albedo_locate(const mu_albedo *t, const float w[3]) {
     const float row = albedo_row(t, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
     return (albedo_place){(quadrant * t->columns + j) * ALBEDO_ROWS + i, column - (float)j, row - (float)i,
-                          2 * part * (still > 0 ? rest / still : 1e30f) * t->det *
-                              ((1 - u) * (1 - u) + across * across) / (t->k * n * n * n)};
+                          2 * part * (still > 0 ? rest / still : 1e30f) * f->det *
+                              ((1 - u) * (1 - u) + across * across) / (f->k * n * n * n)};
 }
 
 static inline int albedo_cell(float *x, int log) {
@@ -114,11 +117,15 @@ static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *sid
 }
 
 /* The direction at u and S of a quadrant. */
-void mu_albedo_direction(const mu_albedo *t, int quadrant, float u, float s, float w[3]);
+void mu_albedo_direction(const mu_albedo *t, const mu_albedo_frame *f, int quadrant, float u, float s,
+                         float w[3]);
 /* A direction of the lobe. */
-void mu_albedo_draw(const mu_albedo *t, const mu_albedo_side *side, float u0, float u1, float w[3]);
+void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, float u0,
+                    float u1, float w[3]);
 /* The cells' shares of what is interpolated, and its average (albedo_lobe.c). */
 void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumulative);
+/* The average over another frame. */
+double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side);
 
 /* What tables are made of: a surface that scatters singly, at an M of its own or another, blurred or not. */
 typedef struct albedo_source {
@@ -129,6 +136,8 @@ typedef struct albedo_source {
     double error; /* that E may have */
     int halvings; /* of a patch along an axis, at most ALBEDO_HALVINGS */
     int roots;    /* 1 + n; 0: chosen */
+    int trusting; /* not every cell is tested */
+    const struct albedo_slope *slopes; /* of a histogram */
 } albedo_source;
 /* Makes a table in `most` floats; returns how many it took. */
 size_t mu_albedo_make(const albedo_source *source, mu_albedo *out, float *values, size_t most);
@@ -138,5 +147,15 @@ double mu_albedo_core(const albedo_source *source, const mu_closure_f *c);
 /* E(wo) of a closure of single scattering, by panels of azimuth that are halved until they agree to within `allowed`
  * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units. */
 float albedo_integral_f(const mu_closure_f *c, double core, double allowed);
+/* F G2 of what a facet reflects, and (1 - F) G2 of what it refracts; its unit normal, and the cosine that it faces wo by. */
+double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing);
+
+/* E(wo) of a histogram: slopes in slope units, and their weights, made once for all views (albedo_histogram.c). */
+enum { ALBEDO_SLOPES = 1 << 12 };
+typedef struct albedo_slope {
+    double p[2], weight;
+} albedo_slope;
+void mu_albedo_slopes(const mu_surface_f *s, albedo_slope out[ALBEDO_SLOPES]);
+float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES]);
 
 #endif

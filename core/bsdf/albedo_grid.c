@@ -4,93 +4,164 @@
  * albedo_grid.c: tables for an M of the point, of a microsurface that is level, and isotropic before M: what it loses depends on
  * the two slope roughnesses that M makes of it, the singular values A >= B of s M^-1 (s the slope unit), and on the axes.
  *
- * A table for each pair of a grid of both, in even steps of an octave from 1/128 to 2; between its nodes the mean of three, by
- * triangles with an edge along A = B, linear in log2 A and log2 B, turned to the axes of M. Beyond the grid it is the nearest
- * of its surfaces. What triangles leave is measured where they are largest, at the middle of the long edge (measure_gap).
+ * A table for each pair of nodes of both; between them the mean of three, by triangles with an edge along A = B, linear in
+ * log2 A and log2 B, at the place that a direction has in the frame of the very M (albedo_set.h). Nodes are dense where slopes
+ * are about 1, far apart below, where what is lost at such a place changes by O(A²); above 2 they are few, for the sake of time.
+ * Beyond both ends the end stands in. ln of averages is quadratic on each triangle. What triangles leave is measured where they are
+ * largest, at the middle of the long edge (measure_gap).
  */
 #include "core/bsdf/albedo_set.h"
 #include "core/bsdf/multiple.h"
 
 #if MU_REAL_BITS == 24
 
-enum { GRID_HALVINGS = 4, PROBES = 4, ROOTS_HOLD = 4 };
+/* `unsure` is of nodes up to PROMISED, 2.2; steeper tables are for what is beyond what is promised, and coarser. */
+enum { GRID_HALVINGS = 5, STEEP_HALVINGS = 4, PROMISED = 10, PROBES = 4, ROOTS_HOLD = 3 };
 
-static double roughness_of(double at, int steps) {
-    return (double)ALBEDO_GRID_LEAST * exp2(at / steps);
+const float mu_albedo_nodes[ALBEDO_NODES] = {-16,   -7.5f, -5.5f, -4,    -2.5f, -1.7f, -1,
+                                             -0.4f, 0.15f, 0.65f, 1.15f, 1.9f,  2.9f,  4.2f};
+
+float mu_albedo_share(float log_a, float from, float to) {
+    const float h = exp2f(1.5f * log_a), low = exp2f(1.5f * from), high = exp2f(1.5f * to);
+    return (h - low) / (high - low) * (1 + high) / (1 + h);
 }
 
-void mu_albedo_grid_choose(const albedo_grid *grid, float a, float b, mu_lobe *out) {
-    const float steps = (float)grid->steps, last = ALBEDO_OCTAVES * steps;
-    const float x = fminf(fmaxf(steps * log2f(a / ALBEDO_GRID_LEAST), 0), last),
-                y = fminf(fmaxf(steps * log2f(b / ALBEDO_GRID_LEAST), 0), x);
-    const int i = (int)fminf(x, last - 1), j = (int)fminf(y, (float)i);
-    const float fx = x - (float)i, fy = fminf(y - (float)j, 1), low = fminf(fx, fy), high = fmaxf(fx, fy);
-    const struct {
-        int node;
-        float share;
-    } corners[3] = {{albedo_grid_node(i, j), 1 - high},
-                    {fx >= fy ? albedo_grid_node(i + 1, j) : albedo_grid_node(i, j + 1), high - low},
-                    {albedo_grid_node(i + 1, j + 1), low}};
-    out->count = 0;
+/* What the first node loses at a place is what the second does. */
+static int table_at(int i, int j) {
+    return albedo_grid_node(i > 1 ? i - 1 : 0, j > 1 ? j - 1 : 0);
+}
+
+typedef struct corner {
+    int i, j;
+    float share;
+} corner;
+
+/* The interval of log2 of a roughness. */
+static int interval(float *x) {
+    int i = 0;
+    *x = fminf(fmaxf(*x, mu_albedo_nodes[0]), mu_albedo_nodes[ALBEDO_NODES - 1]);
+    while (i < ALBEDO_NODES - 2 && *x >= mu_albedo_nodes[i + 1]) i++;
+    return i;
+}
+
+/* The triangle of intervals i >= j, and shares in it, of places within both. */
+static void triangle(int i, int j, float fx, float fy, corner c[3]) {
+    if (i == j) fy = fminf(fy, fx);
+    const float low = fminf(fx, fy), high = fmaxf(fx, fy);
+    c[0] = (corner){i, j, 1 - high};
+    c[1] = fx >= fy ? (corner){i + 1, j, high - low} : (corner){i, j + 1, high - low};
+    c[2] = (corner){i + 1, j + 1, low};
+}
+
+/* exp of what is quadratic on a triangle, from the values at its corners and midway. */
+static float average_at(const float *log_average, const corner c[3]) {
+    float sum = 0;
     for (int k = 0; k < 3; k++) {
-        if (!(corners[k].share > 0)) continue;
-        out->level[out->count] = &grid->table[corners[k].node];
-        out->share[out->count++] = corners[k].share;
+        const corner *d = &c[(k + 1) % 3];
+        sum += c[k].share * (2 * c[k].share - 1) * log_average[albedo_grid_node(2 * c[k].i, 2 * c[k].j)] +
+               4 * c[k].share * d->share * log_average[albedo_grid_node(c[k].i + d->i, c[k].j + d->j)];
     }
+    return expf(sum);
 }
 
-/* 1 - E of single scattering at singular values a and b, toward w. */
-static float lost_of(const albedo_source *source, double a, double b, const float w[3]) {
-    const float m[4] = {(float)(source->surface->unit / a), 0, 0, (float)(source->surface->unit / b)};
+void mu_albedo_grid_choose(const albedo_grid *grid, const float v[4], mu_lobe *out) {
+    const float a = mu_albedo_lay(v, &out->frame), b = a * out->frame.along * out->frame.along,
+                *const n = mu_albedo_nodes;
+    float x = log2f(a), y = log2f(b);
+    const int i = interval(&x), j = interval(&y);
+    corner c[3];
+    triangle(i, j, mu_albedo_share(x, n[i], n[i + 1]), mu_albedo_share(y, n[j], n[j + 1]), c);
+    out->count = 0, out->passes[0] = 0;
+    for (int k = 0; k < 3; k++) {
+        if (!(c[k].share > 0)) continue;
+        out->level[out->count] = &grid->table[table_at(c[k].i, c[k].j)];
+        out->passes[0] += c[k].share * out->level[out->count]->side[0].passes;
+        out->share[out->count++] = c[k].share;
+    }
+    triangle(i, j, (x - n[i]) / (n[i + 1] - n[i]), (y - n[j]) / (n[j + 1] - n[j]), c);
+    for (int side = 0; side < 2 && grid->log_average[side]; side++)
+        out->average[side] = average_at(grid->log_average[side], c);
+}
+
+/* s M^-1 midway between nodes. */
+static void view_at(int twice_i, int twice_j, float v[4]) {
+    const int at[2] = {twice_i, twice_j};
+    float rough[2];
+    for (int k = 0; k < 2; k++)
+        rough[k] = exp2f((mu_albedo_nodes[at[k] / 2] + mu_albedo_nodes[(at[k] + 1) / 2]) / 2);
+    v[0] = rough[0], v[1] = v[2] = 0, v[3] = rough[1];
+}
+
+/* 1 - E of single scattering at V, toward w. */
+static float lost_of(const albedo_source *source, const float v[4], const float w[3]) {
+    const float unit = (float)source->surface->unit, m[4] = {unit / v[0], 0, 0, unit / v[3]};
     closure c;
     if (!MU(mu_bind)(source->surface, w, m, &c)) return 1;
-    return 1 - MU(albedo_integral)(&c, mu_albedo_core(source, &c), fmin(source->error / 8, 1e-3));
+    return 1 - MU(albedo_integral)(&c, mu_albedo_core(source, &c), fmin(source->error / 4, 1e-3));
 }
 
 /* The most that tables are off between nodes: views at heights from an eighth to eight times the roughness of their azimuth. */
 static float measure_gap(const albedo_source *source, const albedo_grid *grid) {
     float most = 0;
-    for (int i = 0; i < ALBEDO_OCTAVES * grid->steps; i++)
-        for (int j = 0; j <= i; j++) {
-            const double a = roughness_of(i + 0.5, grid->steps), b = roughness_of(j + 0.5, grid->steps);
+    for (int i = 3; i < 2 * PROMISED; i += 2)
+        for (int j = 3; j <= i; j += 2) {
+            float v[4];
             mu_lobe lobe;
-            mu_albedo_grid_choose(grid, (float)a, (float)b, &lobe);
+            view_at(i, j, v);
+            mu_albedo_grid_choose(grid, v, &lobe);
             for (int k = 0; k < PROBES * PROBES; k++) {
-                const double psi = PI / 2 * (k % PROBES + 0.5) / PROBES, x = cos(psi),
-                             y = sin(psi) * sqrt(a / b);
-                const double z = hypot(a * x, b * y) * exp2(2 * (k / PROBES) - 3),
+                const double psi = PI / 2 * (k % PROBES + 0.5) / PROBES, a = (double)v[0], b = (double)v[3],
+                             x = cos(psi), y = sin(psi) * sqrt(a / b),
+                             z = hypot(a * x, b * y) * exp2(2 * (k / PROBES) - 3),
                              length = sqrt(x * x + y * y + z * z);
                 const float w[3] = {(float)(x / length), (float)(y / length), (float)(z / length)};
-                float told = 0;
-                for (int l = 0; l < lobe.count; l++)
-                    told +=
-                        lobe.share[l] * albedo_lost(&lobe.level[l]->side[0], albedo_locate(lobe.level[l], w));
-                most = fmaxf(most, fabsf(told - lost_of(source, a, b, w)));
+                float density;
+                const float told = lobe_lost(&lobe, 0, w, &density);
+                most = fmaxf(most, fabsf(told - lost_of(source, v, w)));
             }
         }
     return most;
 }
 
-size_t mu_albedo_grid_make(const albedo_source *like, int steps, mu_albedo *table, float *values, size_t most,
-                           float *unsure) {
-    const albedo_grid grid = {table, steps};
-    albedo_source source = *like;
-    source.halvings = GRID_HALVINGS, source.error /= 2; /* the other half is for what lies between */
-    size_t used = 0;
-    float worst = 0;
-    for (int i = 0; i <= ALBEDO_OCTAVES * steps; i++)
+/* ln of the averages at nodes and midway. */
+static void fill_averages(const albedo_grid *grid, int side, float *out) {
+    for (int i = 0; i < 2 * ALBEDO_NODES - 1; i++)
         for (int j = 0; j <= i; j++) {
-            mu_albedo *t = &table[albedo_grid_node(i, j)];
-            const float m[4] = {(float)(source.surface->unit / roughness_of(i, steps)), 0, 0,
-                                (float)(source.surface->unit / roughness_of(j, steps))};
-            source.transform = m;
-            source.roots = j == i || j % ROOTS_HOLD == 0 ? 0 : 1 + t[-1].roots; /* it changes slowly */
-            used += mu_albedo_make(&source, t, values + used,
-                                   most - used < ALBEDO_GRID_MOST ? most - used : ALBEDO_GRID_MOST);
-            worst = fmaxf(worst, t->side[0].unsure);
+            float v[4];
+            mu_lobe lobe;
+            view_at(i, j, v);
+            mu_albedo_grid_choose(grid, v, &lobe);
+            out[albedo_grid_node(i, j)] = (float)log(lobe_average(&lobe, side));
+        }
+}
+
+size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *values, size_t most,
+                           albedo_grid *out, float *unsure) {
+    const int sides = like->surface->transmission ? 2 : 1;
+    albedo_source source = *like;
+    source.trusting = 1, source.error /= 2; /* the other half is for what lies between */
+    size_t used = (size_t)(sides * ALBEDO_GRID_AVERAGES);
+    float worst = 0;
+    for (int i = 1; i < ALBEDO_NODES; i++)
+        for (int j = 1; j <= i; j++) {
+            mu_albedo *t = &table[table_at(i, j)];
+            const float m[4] = {(float)(source.surface->unit / exp2((double)mu_albedo_nodes[i])), 0, 0,
+                                (float)(source.surface->unit / exp2((double)mu_albedo_nodes[j]))};
+            source.transform = m, source.halvings = i > PROMISED ? STEEP_HALVINGS : GRID_HALVINGS;
+            /* it changes slowly, but where slopes are steep */
+            source.roots = j == i || i >= PROMISED || j % ROOTS_HOLD == 1 ? 0 : 1 + t[-1].roots;
+            const size_t left = most - used, own = (size_t)(sides * ALBEDO_GRID_MOST);
+            used += mu_albedo_make(&source, t, values + used, left < own ? left : own);
+            for (int side = 0; side < sides && i <= PROMISED; side++) worst = fmaxf(worst, t->side[side].unsure);
         }
     source.transform = NULL;
-    worst = fmaxf(worst, measure_gap(&source, &grid));
+    *out = (albedo_grid){table, {NULL, NULL}};
+    for (int side = 0; side < sides; side++) {
+        float *const averages = values + side * ALBEDO_GRID_AVERAGES;
+        fill_averages(out, side, averages);
+        out->log_average[side] = averages;
+    }
+    worst = fmaxf(worst, measure_gap(&source, out));
     *unsure = worst > (float)like->error ? worst : 0;
     return used;
 }

@@ -6,11 +6,10 @@
 
 #if MU_REAL_BITS == 24
 
-/* The roughnesses to which a surface is blurred: below the first, what is lost follows the slopes' own scale and is less than
- * a table tells; beyond the last, tables stay as they are. */
-static const float blurs_from = 1 / 64.0f, blurs_to = 4;
+/* Where a tilt has edges of its own, tables of blurring are sqrt(2) apart, from here to there. */
+static const float tilted_from = -6, tilted_to = 3, tilted_step = 0.5f;
 /* Floats that a table takes at most: alike in all azimuths, even along two axes, or tilted. */
-enum { FEW = 1 << 9, SOME = 1 << 13, MANY = 1 << 16, BLUR_HALVINGS = 3 };
+enum { FEW = 1 << 9, SOME = 1 << 13, MANY = 1 << 16, BLUR_HALVINGS = 4 };
 
 /* What the tables are made of: in float's range, where tables do not change any more with the roughness. */
 static mu_definition reduced(const mu_definition *d) {
@@ -24,7 +23,8 @@ static mu_definition reduced(const mu_definition *d) {
 static size_t floats(const mu_definition *d) {
     const int tilted = d->tilt[0] != 0 || d->tilt[1] != 0 || d->ndf == MU_TABULATED || d->ndf == MU_CUSTOM;
     const size_t one = tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME;
-    return one * (d->transmission ? 2 : 1) * (1 + ALBEDO_BLURS);
+    const size_t side = (1u << BLUR_HALVINGS) + 1, blurred = (tilted ? 32u : 8u) * 2 * side * side;
+    return (one + ALBEDO_BLURS * blurred) * (d->transmission ? 2 : 1);
 }
 
 /* GGX of the same masking: what blurring makes of any distribution. */
@@ -34,21 +34,16 @@ static mu_definition blurred(const mu_definition *single) {
     return ggx;
 }
 
-static int grid_steps(const mu_definition *d) {
-    const int heavy = d->ndf == MU_GGX || d->ndf == MU_DISCRETE_GGX ||
-                      ((d->ndf == MU_GTR || d->ndf == MU_STD) && d->gamma <= 2);
-    return heavy ? ALBEDO_HEAVY_STEPS : ALBEDO_STEPS;
-}
-
 /* Of a grid of its own, and of GGX's. */
 static size_t grid_tables(const mu_definition *d) {
-    if (!d->compensation_varies) return 0;
-    const int ggx = albedo_grid_tables(ALBEDO_HEAVY_STEPS);
-    return (size_t)(d->ndf == MU_GGX ? ggx : ggx + albedo_grid_tables(grid_steps(d)));
+    return !d->compensation_varies ? 0 : (size_t)ALBEDO_GRID_TABLES * (d->ndf == MU_GGX ? 1 : 2);
+}
+static size_t grid_floats(const mu_definition *d) {
+    return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) * (d->transmission ? 2 : 1));
 }
 /* Values; tables of grids; the surfaces that they are made from. */
 static size_t values_bytes(const mu_definition *d) {
-    return padded(sizeof(mu_albedo_set) + (floats(d) + grid_tables(d) * ALBEDO_GRID_MEAN) * sizeof(float));
+    return padded(sizeof(mu_albedo_set) + (floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d)) * sizeof(float));
 }
 static size_t grids_bytes(const mu_definition *d) {
     return padded(grid_tables(d) * sizeof(mu_albedo));
@@ -68,22 +63,54 @@ static float least_roughness(const surface *s, const mu_definition *d) {
     return (float)core * map_least(&s->map);
 }
 
+/* The next node, none much closer than nodes are; but where blurring reaches the larger roughness too, E bends. */
+static float next_blur(float step, float log_blur, float bend) {
+    float next = log_blur + step;
+    for (int k = ALBEDO_NODES - 1; !(step > 0) && k >= 0 && mu_albedo_nodes[k] > log_blur + 0.25f; k--)
+        next = mu_albedo_nodes[k];
+    if (!(next > log_blur)) next = INFINITY;
+    return bend > log_blur + 0.05f ? fminf(next, bend) : next;
+}
+
+/* s M^-1 of what blurring makes of a surface. */
+static void blurred_view(const surface *s, float blur, float v[4]) {
+    closure c;
+    MU(mu_bind)(s, (const float[]){0, 0, 1}, NULL, &c);
+    MU(mu_blur)(&c, blur);
+    for (int k = 0; k < 4; k++) v[k] = c.map.view[k] / c.map.view_z;
+}
+
 static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used, size_t most) {
-    out->first_blur = fmaxf(least_roughness(source->surface, source->definition), blurs_from);
-    source->error = fmin(2.5 * source->error, 0.5), source->halvings = BLUR_HALVINGS;
-    for (float blur = out->first_blur; out->levels <= ALBEDO_BLURS && blur < blurs_to * 1.4f; blur *= 2) {
-        source->blur = blur * 1.000001f;
+    const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
+    const float least = log2f(fmaxf(least_roughness(source->surface, source->definition), 1e-30f)),
+                last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
+                bend = least - 2 * log2f(out->level[0].frame.along),
+                step = tilted ? tilted_step : 0;
+    float at = fmaxf(least, tilted ? tilted_from : mu_albedo_nodes[0]);
+    source->halvings = BLUR_HALVINGS, source->trusting = 1;
+    source->error *= tilted ? sides : 0.6;
+    for (; out->levels <= ALBEDO_BLURS && at <= last; at = next_blur(step, at, bend)) {
+        source->blur = exp2f(at) * 1.000001f;
+        out->log_blur[out->levels - 1] = at;
         used += mu_albedo_make(source, &out->level[out->levels++], out->values + used, most - used);
+    }
+    for (int k = 0; k < 2 * out->levels - 3; k++) {
+        float v[4];
+        mu_lobe lobe;
+        const float blur = exp2f((out->log_blur[k / 2] + out->log_blur[(k + 1) / 2]) / 2) * 1.000001f;
+        blurred_view(source->surface, blur, v);
+        mu_albedo_set_choose_blurred(out, blur, v, &lobe);
+        for (int side = 0; side < sides; side++)
+            out->log_average[side][k] = (float)log(lobe_average(&lobe, side));
     }
     return used;
 }
 
-static size_t make_grid(const albedo_source *source, int steps, mu_albedo *table, float *values,
-                        albedo_grid *out, float *unsure) {
-    const size_t most = (size_t)albedo_grid_tables(steps) * ALBEDO_GRID_MEAN;
+static size_t make_grid(const albedo_source *source, mu_albedo *table, float *values, albedo_grid *out,
+                        float *unsure) {
     float more;
-    *out = (albedo_grid){table, steps};
-    const size_t used = mu_albedo_grid_make(source, steps, table, values, most, &more);
+    const size_t used =
+        mu_albedo_grid_make(source, table, values, grid_floats(source->definition), out, &more);
     *unsure = fmaxf(*unsure, more);
     return used;
 }
@@ -91,15 +118,13 @@ static size_t make_grid(const albedo_source *source, int steps, mu_albedo *table
 /* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
 static size_t make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
                          size_t used) {
-    const int is_ggx = source->definition->ndf == MU_GGX, steps = grid_steps(source->definition);
+    const int is_ggx = source->definition->ndf == MU_GGX;
     const mu_definition ggx = blurred(source->definition);
-    used += make_grid(source, steps, table, out->values + used, &out->grid, &out->unsure);
+    used += make_grid(source, table, out->values + used, &out->grid, &out->unsure);
     out->blurred = out->grid;
     if (is_ggx) return used;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
-    table += albedo_grid_tables(steps);
-    return used +
-           make_grid(source, ALBEDO_HEAVY_STEPS, table, out->values + used, &out->blurred, &out->unsure);
+    return used + make_grid(source, table + ALBEDO_GRID_TABLES, out->values + used, &out->blurred, &out->unsure);
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
@@ -109,11 +134,11 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     albedo_source source = {
         .definition = &single, .error = d->compensation_error, .halvings = ALBEDO_HALVINGS};
     source.surface = MU(mu_surface_make)(&single, single_at);
-    /* what a lattice is off by does not fall as cells do: refining would chase it (albedo_quadrature.c) */
-    if (source.surface->kernel->traits & HAS_JUMPS) source.halvings = 2;
+    albedo_slope slopes[ALBEDO_SLOPES];
+    if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
     size_t used = mu_albedo_make(&source, &out->level[0], out->values, most);
     out->levels = 1;
-    out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, 0};
+    out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, {NULL, NULL}};
     used = d->compensation_varies ? make_grids(&source, out, (void *)grid, single_at, used)
                                   : make_blurs(&source, out, used, most);
     float own = 0;
@@ -122,49 +147,35 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     out->bytes = sizeof *out + used * sizeof(float) + grids_bytes(d);
 }
 
-static void average(mu_lobe *out, int side) {
-    float all = 0, through = 0;
-    for (int k = 0; k < out->count; k++) {
-        const mu_albedo_side *s = &out->level[k]->side[side];
-        all += out->share[k] * s->average;
-        through += out->share[k] * s->average * s->passes;
+void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {
+    const mu_albedo *t = &set->level[0];
+    out->count = 1, out->share[0] = 1, out->level[0] = t, out->frame = t->frame;
+    for (int side = 0; side < 2; side++) out->average[side] = t->side[side].average;
+    out->passes[0] = t->side[0].passes;
+}
+
+void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const float v[4], mu_lobe *out) {
+    const int last = set->levels - 2;
+    int k = 0;
+    if (last < 0) {
+        mu_albedo_set_choose(set, out);
+        return;
     }
-    out->average[side] = all;
-    out->passes[side] = through / all;
-}
-
-void mu_albedo_set_choose(const mu_albedo_set *set, float blur, mu_lobe *out) {
-    out->turn[0] = 1, out->turn[1] = 0;
-    out->count = 1, out->share[0] = 1, out->level[0] = &set->level[0];
-    if (blur > 0 && set->levels > 1) {
-        const float octaves = log2f(blur / set->first_blur), most = (float)(set->levels - 2);
-        const float at = fminf(fmaxf(octaves, 0), most);
-        const int low = (int)fminf(at, fmaxf(most - 1, 0));
-        out->level[0] = &set->level[1 + low], out->share[0] = 1 - (at - (float)low);
-        if (most > 0) out->count = 2, out->level[1] = &set->level[2 + low], out->share[1] = at - (float)low;
+    const float x = fminf(fmaxf(log2f(blur), set->log_blur[0]), set->log_blur[last]), *const n = set->log_blur;
+    while (k < last - 1 && x >= n[k + 1]) k++;
+    const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0, g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
+    const mu_albedo *t = &set->level[1 + k], *next = last ? t + 1 : t;
+    out->count = g > 0 ? 2 : 1;
+    out->level[0] = t, out->share[0] = 1 - g, out->level[1] = next, out->share[1] = g;
+    mu_albedo_lay(v, &out->frame);
+    for (int side = 0; side < (t->side[1].cells ? 2 : 1); side++) {
+        const float *l = &set->log_average[side][2 * k];
+        out->average[side] =
+            t->quadrants > 1 || !last
+                ? (1 - g) * t->side[side].average + g * next->side[side].average
+                : expf((1 - f) * (1 - 2 * f) * l[0] + 4 * f * (1 - f) * l[1] + f * (2 * f - 1) * l[2]);
     }
-    average(out, 0);
-    if (out->level[0]->side[1].cells) average(out, 1);
-}
-
-/* The axes of V^T V, from the half of its angle that does not cancel. */
-static void turn_to_axes(const float v[4], float turn[2]) {
-    const float p = v[0] * v[0] + v[2] * v[2] - v[1] * v[1] - v[3] * v[3],
-                q = 2 * (v[0] * v[1] + v[2] * v[3]);
-    const float r = hypotf(p, q), large = sqrtf((r + fabsf(p)) / 2);
-    const float cosine = r > 0 ? p >= 0 ? large : fabsf(q) / (2 * large) : 1;
-    const float sine = r > 0 ? copysignf(p >= 0 ? fabsf(q) / (2 * large) : large, q) : 0;
-    const float length = r > 0 ? sqrtf(r) : 1;
-    turn[0] = cosine / length, turn[1] = -sine / length;
-}
-
-void mu_albedo_set_choose_at(const mu_albedo_set *set, int blurred_too, const float v[4], mu_lobe *out) {
-    const float plus = hypotf(v[0] + v[3], v[1] - v[2]), minus = hypotf(v[0] - v[3], v[1] + v[2]);
-    const float a = (plus + minus) / 2, n[4] = {v[0] / a, v[1] / a, v[2] / a, v[3] / a};
-    turn_to_axes(n, out->turn);
-    mu_albedo_grid_choose(blurred_too ? &set->blurred : &set->grid, a, a * fabsf(n[0] * n[3] - n[1] * n[2]),
-                          out);
-    average(out, 0);
+    out->passes[0] = (1 - g) * t->side[0].passes + g * next->side[0].passes;
 }
 
 #endif

@@ -39,12 +39,18 @@ static real chance(const closure *c, real lost) {
 void MU(compensated_bind)(closure *c, real blur, int moved) {
     mu_lobe *l = &c->lobe;
     const mu_albedo_set *set = multiple_of(c->surface)->tables;
-    if (moved && set->grid.table) {
-        float v[4];
-        for (int k = 0; k < 4; k++) v[k] = (float)(c->map.view[k] / c->map.view_z);
-        mu_albedo_set_choose_at(set, blur > 0, v, l);
-    } else {
-        mu_albedo_set_choose(set, (float)blur, l);
+    float v[4];
+    for (int k = 0; k < 4; k++) v[k] = (float)(c->map.view[k] / c->map.view_z);
+    if (moved && set->grid.table)
+        mu_albedo_grid_choose(blur > 0 ? &set->blurred : &set->grid, v, l);
+    else if (blur > 0)
+        mu_albedo_set_choose_blurred(set, (float)blur, v, l);
+    else
+        mu_albedo_set_choose(set, l);
+    if (c->surface->transmission) { /* reciprocity: passes average is the same from both sides but for eta² */
+        const float eta2 = (float)square(c->surface->fresnel.a[0]), above = l->average[0],
+                    below = l->average[1] * eta2, passes = fminf(l->passes[0] * above, below);
+        l->passes[0] = passes / above, l->passes[1] = passes / below;
     }
     const float w[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]}, E = 1 - l->average[0];
     l->lost = w[2] > 0 ? lobe_lost(l, below(c), w, &l->density) : 0;

@@ -41,7 +41,7 @@ enum {
     ANISOTROPIC = 2, /* turning the microsurface changes it */
     IS_UNIT_GGX = 4, /* may be sampled within a bound, bounded.h */
     IS_DELTA = 8,    /* one normal: directions have probabilities, not densities */
-    HAS_JUMPS = 16   /* P22 is not smooth: no rule for smooth integrands converges on it */
+    HAS_JUMPS = 16   /* a histogram: no rule for smooth integrands converges on its P22 */
 };
 
 /* A prepared distribution. What `shape` holds is each one's own business. */

@@ -237,10 +237,15 @@ int mu_transform_anisotropy(const double transform[4], double alpha, mu_anisotro
 int mu_metal(const char *symbol, double n[3], double k[3]);
 extern const char *const mu_metal_names[];
 
+/* L of albedo.h and its inverse, |det L|, and what tells azimuths apart. */
+typedef struct mu_albedo_frame {
+    float to[4], from[4], det, k, along;
+} mu_albedo_frame;
 /* The tables that say what a closure of a compensated surface loses (albedo_set.h), in order to be mixed. */
 typedef struct mu_lobe {
     const struct mu_albedo *level[4];
-    float share[4], turn[2]; /* to the tables' axes: cosine and sine */
+    float share[4];
+    mu_albedo_frame frame; /* the closure's */
     float average[2], passes[2];
     float lost, density; /* of wo: the lobe's own density of it */
     float repeated[3];   /* what F leaves of light that was reflected twice or more */

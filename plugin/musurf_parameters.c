@@ -155,7 +155,7 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, "
      "from tables made at compile time, which takes seconds where transform varies; then it serves "
      "reflection by "
-     "what is level, at slope roughnesses of 1/128 to 2), or random_walk (followed on the "
+     "what is level, at slope roughnesses of up to 2), or random_walk (followed on the "
      "microsurface: the reference, but noisy).",
      CHOICE("none", multiple_choices)},
     {HEAD(37, "smith", "Smith masking"),

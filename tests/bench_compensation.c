@@ -3,14 +3,15 @@
 /*
  * bench_compensation.c: how far a white furnace is from closing over compensated surfaces, and what making them takes.
  *
- *     bench_compensation [distribution | case] ...
+ *     bench_compensation [all | distribution | case ...]      (ggx)
  *
  * A row for each distribution and case: what is asked of it (1 % of all light), the largest |E + what the lobe returns - 1|
  * over views from 1 to 89.9 degrees, what tables say that they are off by (mu_surface_tables_unsure), and milliseconds. E is
  * the quadrature of albedo_quadrature.c, its panels equal to within 1e-4; of histograms, which share their quadrature with
  * tables, it is the mean weight of visible normals instead, and "noise" its largest standard error, which the largest of
  * many errors exceeds a few times over. What the lobe returns is the mean of lost cos / (pi A pdf) over its own draws.
- * Fails where an error of a case with no "unsure" is above 1 %, three times the noise allowed. Random seeds are fixed.
+ * Fails where the error is above what is promised of a case: 1 %, and what is said of the tables, or what the README says
+ * of blurring and of points beyond the promised roughnesses; three times the noise allowed. Random seeds are fixed.
  */
 #include <math.h>
 #include <stdio.h>
@@ -28,43 +29,43 @@ static const struct family {
     const char *name;
     mu_ndf ndf;
     double alpha, gamma, exponent;
-} families[] = {{"ggx", MU_GGX, 0.3, 2, 0},        {"beckmann", MU_BECKMANN, 0.3, 2, 0},
-                {"gtr 0.4", MU_GTR, 0.3, 0.4, 0},  {"gtr 1.5", MU_GTR, 0.3, 1.5, 0},
-                {"gtr 4", MU_GTR, 0.5, 4, 0},      {"std 1.6", MU_STD, 0.3, 1.6, 0},
-                {"phong", MU_PHONG, 0, 0, 20},     {"sheen", MU_SHEEN, 0.4, 0, 0},
+} families[] = {{"ggx", MU_GGX, 0.3, 2, 0},          {"beckmann", MU_BECKMANN, 0.3, 2, 0},
+                {"gtr 0.4", MU_GTR, 0.3, 0.4, 0},    {"gtr 1.5", MU_GTR, 0.3, 1.5, 0},
+                {"gtr 4", MU_GTR, 0.5, 4, 0},        {"std 1.6", MU_STD, 0.3, 1.6, 0},
+                {"phong", MU_PHONG, 0, 0, 20},       {"sheen", MU_SHEEN, 0.4, 0, 0},
                 {"tabulated", MU_TABULATED, 0, 0, 0}};
 
 /* Each M is that of the definition, or of points. */
 static const struct kind {
     const char *name;
     double map[4], tilt[2];
-    int glass, blurs, varies; /* varies: roughnesses within 2^-varies ... 2^varies */
-} kinds[] = {{"level", {1, 0, 0, 1}, {0, 0}, 0, 0, 0},
-             {"rough", {0.2, 0, 0, 0.2}, {0, 0}, 0, 0, 0},
-             {"100:1", {1, 0, 0, 100}, {0, 0}, 0, 0, 0},
-             {"rough 100:1", {0.1, 0, 0, 10}, {0, 0}, 0, 0, 0},
-             {"skew", {1, 2, 0, 1}, {0, 0}, 0, 0, 0},
-             {"tilt", {1, 0, 0, 1}, {0.3, 0.2}, 0, 0, 0},
-             {"skew, tilt", {1, 2, 0, 1}, {0.3, 0.2}, 0, 0, 0},
-             {"glass", {1, 0, 0, 1}, {0, 0}, 1, 0, 0},
-             {"skew glass", {1, 2, 0, 1}, {0, 0}, 1, 0, 0},
-             {"tilt glass", {1, 0, 0, 1}, {0.3, 0.2}, 1, 0, 0},
-             {"blur", {1, 0, 0, 1}, {0, 0}, 0, 1, 0},
-             {"skew blur", {1, 2, 0, 1}, {0, 0}, 0, 1, 0},
-             {"tilt blur", {1, 0, 0, 1}, {0.3, 0.2}, 0, 1, 0},
-             {"glass blur", {1, 0, 0, 1}, {0, 0}, 1, 1, 0},
-             {"skew glass blur", {1, 2, 0, 1}, {0, 0}, 1, 1, 0},
-             {"tilt glass blur", {1, 0, 0, 1}, {0.3, 0.2}, 1, 1, 0},
-             {"points", {1, 0, 0, 1}, {0, 0}, 0, 0, 1},
-             {"points beyond", {1, 0, 0, 1}, {0, 0}, 0, 0, 5},
-             {"points blur", {1, 0, 0, 1}, {0, 0}, 0, 1, 3},
-             {"points glass", {1, 0, 0, 1}, {0, 0}, 1, 0, 3}};
+    int glass, blurs;
+    double least, most; /* of M per point: log2 of the roughnesses it makes */
+    double promised;    /* 0: 1 % */
+} kinds[] = {{"level", {1, 0, 0, 1}, {0, 0}, 0, 0, 0, 0, 0},
+             {"rough", {0.2, 0, 0, 0.2}, {0, 0}, 0, 0, 0, 0, 0},
+             {"100:1", {1, 0, 0, 100}, {0, 0}, 0, 0, 0, 0, 0},
+             {"rough 100:1", {0.1, 0, 0, 10}, {0, 0}, 0, 0, 0, 0, 0},
+             {"skew", {1, 2, 0, 1}, {0, 0}, 0, 0, 0, 0, 0},
+             {"tilt", {1, 0, 0, 1}, {0.3, 0.2}, 0, 0, 0, 0, 0},
+             {"skew, tilt", {1, 2, 0, 1}, {0.3, 0.2}, 0, 0, 0, 0, 0},
+             {"glass", {1, 0, 0, 1}, {0, 0}, 1, 0, 0, 0, 0},
+             {"skew glass", {1, 2, 0, 1}, {0, 0}, 1, 0, 0, 0, 0},
+             {"tilt glass", {1, 0, 0, 1}, {0.3, 0.2}, 1, 0, 0, 0, 0},
+             {"blur", {1, 0, 0, 1}, {0, 0}, 0, 1, 0, 0, 0},
+             {"skew blur", {1, 2, 0, 1}, {0, 0}, 0, 1, 0, 0, 0},
+             {"tilt blur", {1, 0, 0, 1}, {0.3, 0.2}, 0, 1, 0, 0, 0},
+             {"glass blur", {1, 0, 0, 1}, {0, 0}, 1, 1, 0, 0, 0},
+             {"skew glass blur", {1, 2, 0, 1}, {0, 0}, 1, 1, 0, 0, 0.015},
+             {"tilt glass blur", {1, 0, 0, 1}, {0.3, 0.2}, 1, 1, 0, 0, 0.04},
+             {"points", {1, 0, 0, 1}, {0, 0}, 0, 0, -7, 1, 0},
+             {"points beyond", {1, 0, 0, 1}, {0, 0}, 0, 0, -5, 5, 0.06},
+             {"points blur", {1, 0, 0, 1}, {0, 0}, 0, 1, -7, 1, 0},
+             {"points glass", {1, 0, 0, 1}, {0, 0}, 1, 0, -7, 1, 0}};
 
-typedef struct pair {
-    void *memory[2];
-    mu_surface_f *with, *single;
-    double ms;
-} pair;
+static int varies(const struct kind *k) {
+    return k->most > k->least;
+}
 
 static mu_surface_f *make(const mu_definition *d, void **memory) {
     *memory = aligned_alloc(64, (mu_surface_bytes_f(d) + 63) / 64 * 64);
@@ -94,7 +95,7 @@ static mu_definition define(const struct family *f, const struct kind *k, const 
     memcpy(d.transform, k->map, sizeof d.transform);
     memcpy(d.tilt, k->tilt, sizeof d.tilt);
     if (k->glass) d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
-    d.compensation_varies = k->varies > 0;
+    d.compensation_varies = varies(k);
     return d;
 }
 
@@ -110,8 +111,11 @@ static double returned(const mu_closure_f *c, int draws) {
             float w[3], density;
             u0 = fmod(u0 + 0.7548776662466927, 1), u1 = fmod(u1 + 0.5698402909980532, 1);
             lobe_draw(l, to, (float)fmin(u0, 0.9999999), (float)u1, w);
-            const double lost = (double)lobe_lost(l, to, w, &density), length = sqrt((double)(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
-            if (density > 0) sum += share * lost * (double)w[2] / length / (TURN / 2 * (double)l->average[to] * (double)density) / draws;
+            const double lost = (double)lobe_lost(l, to, w, &density),
+                         length = sqrt((double)(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+            if (density > 0)
+                sum += share * lost * (double)w[2] / length /
+                       (TURN / 2 * (double)l->average[to] * (double)density) / draws;
         }
     }
     return sum;
@@ -141,12 +145,13 @@ static double single_albedo(const struct family *f, mu_closure_f *c, int blurred
     return sum;
 }
 
-/* An M by which slopes of roughness `width` become rough by 2^-octaves ... 2^octaves along its axes. */
-static void random_map(uniform *random, double width, double octaves, float m[4]) {
+/* An M that makes slopes of roughness `width` as rough along its axes as the case says. */
+static void random_map(uniform *random, double width, const struct kind *of, float m[4]) {
     double rough[2];
-    for (int k = 0; k < 2; k++) rough[k] = exp2(octaves < 3 ? 8 * uniform_double(random) - 7 : octaves * (2 * uniform_double(random) - 1));
+    for (int k = 0; k < 2; k++) rough[k] = exp2(of->least + (of->most - of->least) * uniform_double(random));
     const double a = width / rough[0], b = width / rough[1], s = 7 * uniform_double(random);
-    m[0] = (float)(a * cos(s)), m[1] = (float)(-b * sin(s)), m[2] = (float)(a * sin(s)), m[3] = (float)(b * cos(s));
+    m[0] = (float)(a * cos(s)), m[1] = (float)(-b * sin(s)), m[2] = (float)(a * sin(s)),
+    m[3] = (float)(b * cos(s));
 }
 
 /* 1 if the case is what it should be. */
@@ -167,22 +172,23 @@ static int run(const struct family *f, const struct kind *k, const double *histo
     uniform random = {20261126u};
     double worst = 0, noise = 0, back = 0, sides[2] = {0, 0};
     char where[160] = "";
-    for (int i = 0; i < VIEWS * (k->varies || k->blurs ? 8 : 3); i++) {
+    for (int i = 0; i < VIEWS * (varies(k) || k->blurs ? 8 : 3); i++) {
         const int below = k->glass && i % 2, height = i / (1 + k->glass) % VIEWS;
         float w[3], m[4] = {1, 0, 0, 1};
-        direction(cos((1 + 88.9 * height / (VIEWS - 1)) * TURN / 360), TURN * fmod(i * 0.6180339887498949, 1), w);
+        direction(cos((1 + 88.9 * height / (VIEWS - 1)) * TURN / 360), TURN * fmod(i * 0.6180339887498949, 1),
+                  w);
         if (below) w[0] = -w[0], w[1] = -w[1], w[2] = -w[2];
         const float blur = k->blurs ? (float)exp2(6 * uniform_double(&random) - 5) : 0;
-        if (k->varies) random_map(&random, width, k->varies, m);
+        if (varies(k)) random_map(&random, width, k, m);
         mu_closure_f c, simple;
-        if (!mu_bind_f(s, w, k->varies ? m : NULL, &c)) continue;
-        mu_bind_f(single, w, k->varies ? m : NULL, &simple);
+        if (!mu_bind_f(s, w, varies(k) ? m : NULL, &c)) continue;
+        mu_bind_f(single, w, varies(k) ? m : NULL, &simple);
         if (k->blurs) mu_blur_f(&c, blur), mu_blur_f(&simple, blur);
-        if (k->blurs || k->varies)
+        if (k->blurs || varies(k))
             back = returned(&c, DRAWS);
         else if (i <= k->glass)
             sides[below] = returned(&c, MANY);
-        if (!k->blurs && !k->varies) back = sides[below];
+        if (!k->blurs && !varies(k)) back = sides[below];
         double error;
         const int widened = k->blurs && simple.alpha >= blur;
         const double E = single_albedo(f, &simple, widened, &random, &error);
@@ -190,13 +196,15 @@ static int run(const struct family *f, const struct kind *k, const double *histo
         noise = fmax(noise, error);
         if (off > worst) {
             worst = off;
-            snprintf(where, sizeof where, "z %.4g blur %.2g E %.3f lost %.3f back %.4f M %.2g %.2g %.2g %.2g", (double)w[2], (double)blur, E, (double)c.lobe.lost, back, (double)m[0], (double)m[1], (double)m[2], (double)m[3]);
+            snprintf(where, sizeof where, "z %.4g blur %.2g E %.3f lost %.3f back %.4f M %.2g %.2g %.2g %.2g",
+                     (double)w[2], (double)blur, E, (double)c.lobe.lost, back, (double)m[0], (double)m[1],
+                     (double)m[2], (double)m[3]);
         }
     }
     const double unsure = (double)mu_surface_tables_unsure_f(s);
-    const int right = worst <= fmax(0.01, unsure) + 3 * noise;
-    printf("%s %.4f noise %.4f unsure %.4f %7.0f ms %8zu bytes   at %s\n", right ? "    " : "FAIL", worst, noise, unsure, ms,
-           mu_surface_table_bytes_f(s), where);
+    const int right = worst <= (k->promised > 0 ? k->promised : 0.01) + unsure + 3 * noise;
+    printf("%s %.4f noise %.4f unsure %.4f %7.0f ms %8zu bytes   at %s\n", right ? "    " : "FAIL", worst,
+           noise, unsure, ms, mu_surface_table_bytes_f(s), where);
     fflush(stdout);
     free(memory[0]), free(memory[1]);
     return right;
@@ -218,11 +226,14 @@ static int asked(const char *name, const char *const *names, int count, int of_f
 int main(int argc, char **argv) {
     static double histogram[SIDE * SIDE];
     const char *const *names = (const char *const *)argv + 1;
-    int failed = 0;
+    static const char *const ggx[] = {"ggx"};
+    const int all = argc > 1 && strcmp(argv[1], "all") == 0;
+    int count = all ? 0 : argc - 1, failed = 0;
+    if (argc == 1) names = ggx, count = 1;
     fill_histogram(histogram);
     for (size_t f = 0; f < sizeof families / sizeof families[0]; f++)
         for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
-            if (asked(families[f].name, names, argc - 1, 1) && asked(kinds[k].name, names, argc - 1, 0))
+            if (asked(families[f].name, names, count, 1) && asked(kinds[k].name, names, count, 0))
                 failed |= !run(&families[f], &kinds[k], histogram);
     return failed;
 }

@@ -160,7 +160,8 @@ float mu_albedo_lay(const float v[4], mu_albedo_frame *f) {
     const float plus = hypotf(v[0] + v[3], v[1] - v[2]), minus = hypotf(v[0] - v[3], v[1] + v[2]);
     const float large = fmaxf((plus + minus) / 2, FLT_MIN),
                 n[4] = {v[0] / large, v[1] / large, v[2] / large, v[3] / large};
-    const float ratio = fmaxf((float)fabs((double)n[0] * (double)n[3] - (double)n[1] * (double)n[2]), smallest);
+    const float ratio =
+        fmaxf((float)fabs((double)n[0] * (double)n[3] - (double)n[1] * (double)n[2]), smallest);
     /* twice the axes' angle, and the half of it that does not cancel */
     const float p = n[0] * n[0] + n[2] * n[2] - n[1] * n[1] - n[3] * n[3],
                 q = 2 * (n[0] * n[1] + n[2] * n[3]), r = hypotf(p, q), root = sqrtf((r + fabsf(p)) / 2);

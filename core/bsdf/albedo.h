@@ -133,10 +133,10 @@ typedef struct albedo_source {
     const mu_definition *definition;
     const float *transform; /* NULL: the surface's */
     float blur;
-    double error; /* that E may have */
-    int halvings; /* of a patch along an axis, at most ALBEDO_HALVINGS */
-    int roots;    /* 1 + n; 0: chosen */
-    int trusting; /* not every cell is tested */
+    double error;                      /* that E may have */
+    int halvings;                      /* of a patch along an axis, at most ALBEDO_HALVINGS */
+    int roots;                         /* 1 + n; 0: chosen */
+    int trusting;                      /* not every cell is tested */
     const struct albedo_slope *slopes; /* of a histogram */
 } albedo_source;
 /* Makes a table in `most` floats; returns how many it took. */
@@ -151,7 +151,7 @@ float albedo_integral_f(const mu_closure_f *c, double core, double allowed);
 double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing);
 
 /* E(wo) of a histogram: slopes in slope units, and their weights, made once for all views (albedo_histogram.c). */
-enum { ALBEDO_SLOPES = 1 << 12 };
+enum { ALBEDO_SLOPES = 1 << 11 };
 typedef struct albedo_slope {
     double p[2], weight;
 } albedo_slope;

@@ -65,8 +65,8 @@ static float average_at(const float *log_average, const corner c[3]) {
 }
 
 void mu_albedo_grid_choose(const albedo_grid *grid, const float v[4], mu_lobe *out) {
-    const float a = mu_albedo_lay(v, &out->frame), b = a * out->frame.along * out->frame.along,
-                *const n = mu_albedo_nodes;
+    const float a = mu_albedo_lay(v, &out->frame),
+                b = a * out->frame.along * out->frame.along, *const n = mu_albedo_nodes;
     float x = log2f(a), y = log2f(b);
     const int i = interval(&x), j = interval(&y);
     corner c[3];
@@ -152,7 +152,8 @@ size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *v
             source.roots = j == i || i >= PROMISED || j % ROOTS_HOLD == 1 ? 0 : 1 + t[-1].roots;
             const size_t left = most - used, own = (size_t)(sides * ALBEDO_GRID_MOST);
             used += mu_albedo_make(&source, t, values + used, left < own ? left : own);
-            for (int side = 0; side < sides && i <= PROMISED; side++) worst = fmaxf(worst, t->side[side].unsure);
+            for (int side = 0; side < sides && i <= PROMISED; side++)
+                worst = fmaxf(worst, t->side[side].unsure);
         }
     source.transform = NULL;
     *out = (albedo_grid){table, {NULL, NULL}};

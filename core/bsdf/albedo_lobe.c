@@ -29,8 +29,8 @@ void mu_albedo_direction(const mu_albedo *t, const mu_albedo_frame *f, int quadr
     w[0] /= length, w[1] /= length, w[2] = 1 / length;
 }
 
-static void integrate_panel(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant, double u0,
-                            double u1, double s0, double s1, double sums[2]) {
+static void integrate_panel(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side,
+                            int quadrant, double u0, double u1, double s0, double s1, double sums[2]) {
     for (int i = 0; i < 16; i++) {
         float w[3];
         mu_albedo_direction(t, f, quadrant, (float)(u0 + (u1 - u0) * node[i / 4]),
@@ -44,8 +44,8 @@ static void integrate_panel(const mu_albedo *t, const mu_albedo_frame *f, const 
 
 /* The integral of lost cos over u0 ... u1 of a cell of S, and of cos, by Gauss's rule. A cell at S = 0 is halved toward it: of
  * a smooth surface that is where most directions are. */
-static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant, double u0, double u1,
-                      double s0, double s1, double sums[2]) {
+static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
+                      double u0, double u1, double s0, double s1, double sums[2]) {
     double high = s1;
     for (; s0 == 0 && high > 0.25 * (double)f->det; high /= 2)
         integrate_panel(t, f, side, quadrant, u0, u1, high / 2, high, sums);
@@ -53,8 +53,8 @@ static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_alb
 }
 
 /* Along u a cell at 0 is halved toward it: under a strong anisotropy that is where most azimuths are. */
-static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant, double u0, double u1,
-                    double s0, double s1, double *cosines) {
+static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
+                    double u0, double u1, double s0, double s1, double *cosines) {
     double sums[2] = {0, 0};
     if (u0 > 0 || t->columns == 1) {
         integrate(t, f, side, quadrant, u0, u1, s0, s1, sums);

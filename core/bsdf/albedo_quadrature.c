@@ -150,8 +150,7 @@ float MU(albedo_integral)(const closure *c, double core, double allowed) {
                                                     (double)c->map.view[2] / z, (double)c->map.view[3] / z};
     const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]},
                  det = fabs(v[0] * v[3] - v[1] * v[2]);
-    /* of slopes: poles at +-i pi/2 leave Gauss's rule of 8 nodes 5e-8 of a panel of 2.5, 1e-5 of one of 4 */
-    ray l = {.c = c, .panel = allowed < 5e-4 ? 2.5 : 4};
+    ray l = {.c = c, .panel = 2.5};
     l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
     const double facing = atan2(v[2] * (double)c->wo[0] + v[3] * (double)c->wo[1],
                                 v[0] * (double)c->wo[0] + v[1] * (double)c->wo[1]);

@@ -39,11 +39,13 @@ static size_t grid_tables(const mu_definition *d) {
     return !d->compensation_varies ? 0 : (size_t)ALBEDO_GRID_TABLES * (d->ndf == MU_GGX ? 1 : 2);
 }
 static size_t grid_floats(const mu_definition *d) {
-    return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) * (d->transmission ? 2 : 1));
+    return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) *
+                    (d->transmission ? 2 : 1));
 }
 /* Values; tables of grids; the surfaces that they are made from. */
 static size_t values_bytes(const mu_definition *d) {
-    return padded(sizeof(mu_albedo_set) + (floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d)) * sizeof(float));
+    return padded(sizeof(mu_albedo_set) +
+                  (floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d)) * sizeof(float));
 }
 static size_t grids_bytes(const mu_definition *d) {
     return padded(grid_tables(d) * sizeof(mu_albedo));
@@ -84,8 +86,7 @@ static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used,
     const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
     const float least = log2f(fmaxf(least_roughness(source->surface, source->definition), 1e-30f)),
                 last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
-                bend = least - 2 * log2f(out->level[0].frame.along),
-                step = tilted ? tilted_step : 0;
+                bend = least - 2 * log2f(out->level[0].frame.along), step = tilted ? tilted_step : 0;
     float at = fmaxf(least, tilted ? tilted_from : mu_albedo_nodes[0]);
     source->halvings = BLUR_HALVINGS, source->trusting = 1;
     source->error *= tilted ? sides : 0.6;
@@ -124,7 +125,8 @@ static size_t make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *t
     out->blurred = out->grid;
     if (is_ggx) return used;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
-    return used + make_grid(source, table + ALBEDO_GRID_TABLES, out->values + used, &out->blurred, &out->unsure);
+    return used +
+           make_grid(source, table + ALBEDO_GRID_TABLES, out->values + used, &out->blurred, &out->unsure);
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
@@ -161,9 +163,11 @@ void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const fl
         mu_albedo_set_choose(set, out);
         return;
     }
-    const float x = fminf(fmaxf(log2f(blur), set->log_blur[0]), set->log_blur[last]), *const n = set->log_blur;
+    const float x = fminf(fmaxf(log2f(blur), set->log_blur[0]), set->log_blur[last]), *const n =
+                                                                                          set->log_blur;
     while (k < last - 1 && x >= n[k + 1]) k++;
-    const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0, g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
+    const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0,
+                g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
     const mu_albedo *t = &set->level[1 + k], *next = last ? t + 1 : t;
     out->count = g > 0 ? 2 : 1;
     out->level[0] = t, out->share[0] = 1 - g, out->level[1] = next, out->share[1] = g;

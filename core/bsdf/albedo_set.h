@@ -43,11 +43,11 @@ static inline int albedo_grid_node(int i, int j) {
 }
 
 struct mu_albedo_set {
-    int levels;                   /* 1 + blurs */
-    float unsure;                 /* of level[0], and of the grids */
-    size_t bytes;                 /* that it takes */
-    albedo_grid grid, blurred;    /* for an M of the point; else of no tables */
-    float log_blur[ALBEDO_BLURS]; /* log2 of the roughness of level[1 ...] */
+    int levels;                             /* 1 + blurs */
+    float unsure;                           /* of level[0], and of the grids */
+    size_t bytes;                           /* that it takes */
+    albedo_grid grid, blurred;              /* for an M of the point; else of no tables */
+    float log_blur[ALBEDO_BLURS];           /* log2 of the roughness of level[1 ...] */
     float log_average[2][2 * ALBEDO_BLURS]; /* of both sides: of these, and midway to the next */
     mu_albedo level[1 + ALBEDO_BLURS];
     float values[];

@@ -131,7 +131,7 @@ typedef struct mu_definition {
     /* Of compensation: what a directional albedo of its tables may be off, 1e-4 ... 0.5: they are refined until it is kept. */
     double compensation_error;
     /* True: tables for an M of the point too (mu_bind), of reflection by what is level, and isotropic before M, at slope
-     * roughnesses of 1/128 to 2 along its axes (beyond, those of the nearest); else such an M scatters singly. Takes seconds. */
+     * roughnesses of up to 2 along its axes (coarser tables reach to 18); else such an M scatters singly. Takes seconds. */
     int compensation_varies;
     /* True: the tables were made with another surface of this very definition (mu_surface_tables), of either precision, which
      * must outlive this one. Its size does not ask which. */

@@ -28,8 +28,17 @@ static double relative(double p, double zeta2, double u, double rest) {
     return u * u < 1e-290 * zeta2 ? 0 : exp(-p * log1p(zeta2 / (u * u) * (rest * (1 + u)) / (1 + zeta2)));
 }
 
-/* J over its value's steep factor: between 1 / (2p + 1) and 1. */
+/* (2p + 1) J / steep factor = 2F1(1, p; p + 3/2; x), x = 1 / (1 + zeta²): each term is positive and below x of the last. */
+static double series(double p, double x) {
+    double sum = 1, term = 1;
+    for (int k = 0; term > 1e-17 * sum; k++) sum += term *= x * (p + k) / (p + 1.5 + k);
+    return sum / (2 * p + 1);
+}
+
+/* J over its value's steep factor (1 + zeta²)^-p: between 1 / (2p + 1) and 1. Away from the horizon, where
+ * the series has less than 200 terms, it is faster. */
 static double relative_integral(double p, double zeta2) {
+    if (zeta2 >= 0.25) return series(p, 1 / (1 + zeta2));
     const double h = p <= 0.5 ? 0.25 : 0.125;
     /* Where u T = 1, e^-20 of the whole at least, and where 1 - u comes to 1/p. */
     const double left = zeta2 > 1e-17 ? -log1p(1 / zeta2) / 2 : -20, start = left > -20 ? left : -20;

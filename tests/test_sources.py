@@ -178,6 +178,28 @@ class Directions(Pictures):
         self.assertLess(off.mean(), 0.01)
 
 
+class Maps(Pictures):
+    def test_formula_is_the_named_map(self):
+        for transform in ([[1, 0], [0, 1]], M):
+            named, formula = {"map": "power_shear", "amount": 2, "exponent": 5}, {"u": "u", "v": "v + 2*u^5"}
+            self.assertTrue(np.array_equal(*(self.picture(self.metal(alpha=0.25, transform=transform, jacobian=j)) for j in (named, formula))))
+
+    def test_displacement_is_its_formula(self):
+        """A spline through the texels of 2 u^5, whose derivative is off by h^2/6 of its third one: 2e-4 for u = 1."""
+        u = (np.arange(256) + 0.5) / 256
+        self.texture("d.exr", {"X": np.zeros((4, 256)), "Y": np.tile(2 * u**5, (4, 1))})
+        formula = self.picture(self.metal(alpha=0.25, jacobian={"u": "u", "v": "v + 2*u^5"}))
+        got = self.picture(self.metal(alpha=0.25, jacobian={"displacement": "d.exr", "channels": ["X", "Y"], "wrap": "clamp"}))
+        off = np.abs(got - formula) > 0.01 * formula
+        self.assertLess(off.mean(), 0.02)
+        ramp = np.add.outer(-np.arange(64), 2 * np.arange(64)) / 64  # v grows upwards
+        self.texture("r.exr", {"X": ramp, "Y": -ramp})
+        linear = self.picture(self.metal(alpha=0.25, jacobian={"u": "u + 0.25*(2*u + v)", "v": "v - 0.25*(2*u + v)"}))
+        got = self.picture(self.metal(alpha=0.25, jacobian={"displacement": "r.exr", "channels": ["X", "Y"], "scale": 0.25, "wrap": "clamp"}))
+        off = np.abs(got - linear) > 1e-3 * linear
+        self.assertLess(off.mean(), 2 * 4 / 64)  # but for two texels at each edge, where the ramp ends
+
+
 class Filtering(Pictures):
     """A plate under a sun alone, so that nothing but the texture is sampled; a pixel sees some 45 texels in a row."""
 
@@ -312,6 +334,8 @@ class Refusals(Pictures):
             (dict(jacobian={"u": "u"}), "jacobian.v"),
             (dict(jacobian={"u": "u", "v": "v + w"}), "jacobian.v", "no formula", "knows u, v, pi"),
             (dict(jacobian={}), "needs a named \"map\""),
+            (dict(jacobian={"displacement": "good.exr"}), "jacobian.displacement", "too few channels"),
+            (dict(jacobian={"displacement": "good.exr", "u": "u"}), "jacobian.u", "displacement"),
         ]
         for parameters, *words in cases:
             with self.subTest(parameters):

@@ -42,6 +42,7 @@ static uint32_t of_material(const mu_material *material) {
         if (material->plan.lobes & lobes[i][0]) bits |= lobes[i][1];
     if (material->plan.table_bytes) bits |= MU_FEATURE_MATERIAL_TABLES;
     if (material->jacobian.map != MU_JACOBIAN_NONE) bits |= MU_FEATURE_JACOBIANS;
+    if (material->jacobian.map == MU_JACOBIAN_DISPLACEMENT) bits |= MU_FEATURE_TEXTURES;
     if (material->footprints) bits |= MU_FEATURE_FOOTPRINTS;
     const mu_varying *varying = material->varying;
     for (size_t i = 0; varying && i < varying->count; ++i)

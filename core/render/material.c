@@ -96,6 +96,17 @@ static void read_transform(mu_material *material, const mu_settings *settings) {
     for (int i = 0; i < 4; i++) material->transform[i] = (float)(setting && setting->values ? setting->values : p->initial)[i];
 }
 
+static uint64_t digest_picture(uint64_t digest, const mu_mipmap *picture) {
+    const size_t count =
+        picture->levels ? (size_t)picture->level[0].width * (size_t)picture->level[0].height * (size_t)picture->channels : 0;
+    for (size_t k = 0; k < count; k++) {
+        uint32_t word;
+        memcpy(&word, picture->texels + k, sizeof word);
+        digest = (digest ^ word) * 0x100000001b3u;
+    }
+    return digest;
+}
+
 /* FNV-1a, eight bytes at a time. */
 static uint64_t digest_of(const mu_settings *settings) {
     uint64_t digest = 0xcbf29ce484222325u;
@@ -105,15 +116,8 @@ static uint64_t digest_of(const mu_settings *settings) {
             memcpy(&word, settings->items[i].values + k, sizeof word);
             digest = (digest ^ word) * 0x100000001b3u;
         }
-    for (size_t i = 0; i < settings->source_count; i++) {
-        const mu_mipmap *picture = &settings->sources[i].picture;
-        const size_t count = picture->levels ? picture->level[0].at + picture->level[picture->levels > 1].at : 0;
-        for (size_t k = 0; k < count; k++) {
-            uint32_t word;
-            memcpy(&word, picture->texels + k, sizeof word);
-            digest = (digest ^ word) * 0x100000001b3u;
-        }
-    }
+    for (size_t i = 0; i < settings->source_count; i++)
+        digest = digest_picture(digest, &settings->sources[i].picture);
     return digest;
 }
 
@@ -174,6 +178,7 @@ static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_pl
     _Bool good = 1;
     material->tension = deforming && find_varying_transform(material->type);
     if (jacobian.value) good = mu_jacobian_read(&material->jacobian, &jacobian, error);
+    material->digest = digest_picture(material->digest, &material->jacobian.displacement.picture);
     /* what composes M of sources puts the rest before it, too */
     const _Bool composes =
         settings.source_count && material->type->extension && material->type->extension(MUSURF_MAP_ID);
@@ -212,5 +217,6 @@ _Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, con
 void mu_material_free(mu_material *material) {
     if (material->compiled) material->type->release(material->compiled);
     mu_varying_free(material->varying);
+    mu_jacobian_free(&material->jacobian);
     *material = (mu_material){0};
 }

@@ -251,7 +251,8 @@ static _Bool place_source(const mu_settings *s, mu_source *source, const mu_plac
     source->slot = MU_SLOT_VALUES;
     for (size_t i = 0; i < s->source_count; i++) source->slot += (uint32_t)s->sources[i].count;
     return source->slot + (uint32_t)source->count <= MU_SLOTS ||
-           mu_place_fail(place, error, "is more than varies at once: %d numbers may", MU_SLOTS - MU_SLOT_VALUES);
+           mu_place_fail(place, error, "is more than varies at once: %d numbers may",
+                         MU_SLOTS - MU_SLOT_VALUES);
 }
 
 /* A source of values in place of one. */
@@ -260,6 +261,7 @@ static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *
     if (!mu_source_read(source, p, place, error)) return 0;
     musurf_setting *setting = mu_settings_add(s, p);
     if (mu_source_is_constant(source, s->values[s->count - 1])) {
+        setting->count = (size_t)source->count; /* which the document does not tell */
         mu_source_free(source);
         return 1;
     }

@@ -25,8 +25,7 @@ _Bool mu_source_is(const json_t *value) {
            json_object_get(value, "attribute") || json_object_get(value, "expression");
 }
 
-/* `count` strings, or, of one, the string alone; borrowed. */
-static _Bool read_strings(const mu_place *place, int count, const char **out, mu_error *error) {
+_Bool mu_source_texts(const mu_place *place, int count, const char **out, mu_error *error) {
     if (count == 1 && json_is_string(place->value)) return mu_place_string(place, out, error);
     if (!json_is_array(place->value) || json_array_size(place->value) != (size_t)count)
         return mu_place_fail(place, error, "must be %s%d text%s", count == 1 ? "" : "a list of ", count,
@@ -69,7 +68,7 @@ static _Bool read_picture(mu_source *source, const mu_place *place, const char *
     size_t srgb = 0;
     mu_picture_request request = {.count = direction ? 2 : source->count, .range = {0, 1}};
     if (space.value && (!mu_place_choice(&space, spaces, &srgb, error))) return 0;
-    if (channels.value && !read_strings(&channels, request.count, names, error)) return 0;
+    if (channels.value && !mu_source_texts(&channels, request.count, names, error)) return 0;
     request.srgb = srgb == 1, request.named = channels.value != NULL;
     request.names = channels.value ? names : source->param->kind == MUSURF_MATRIX ? of_tension : NULL;
     request.param = direction ? NULL : source->param;
@@ -81,7 +80,7 @@ static _Bool read_picture(mu_source *source, const mu_place *place, const char *
 static _Bool read_attribute(mu_source *source, const mu_place *place, mu_error *error) {
     const mu_place names = mu_place_member(place, "attribute");
     const char *text[MU_SOURCE_NUMBERS];
-    if (!read_strings(&names, source->count, text, error)) return 0;
+    if (!mu_source_texts(&names, source->count, text, error)) return 0;
     for (int i = 0; i < source->count; i++) {
         if (!text[i][0] || strlen(text[i]) >= MU_ATTRIBUTE_NAME)
             return mu_place_fail(&names, error, "is a name of 1 to %d characters", MU_ATTRIBUTE_NAME - 1);
@@ -94,7 +93,7 @@ static _Bool read_expression(mu_source *source, const mu_place *place, mu_error 
     const mu_place texts = mu_place_member(place, "expression");
     const char *text[MU_SOURCE_NUMBERS];
     char why[256];
-    if (!read_strings(&texts, source->count, text, error)) return 0;
+    if (!mu_source_texts(&texts, source->count, text, error)) return 0;
     source->formula = calloc((size_t)source->count, sizeof *source->formula);
     if (!source->formula) return mu_place_fail(place, error, "not enough memory");
     for (int i = 0; i < source->count; i++)

@@ -15,6 +15,9 @@ typedef struct mu_picture_request {
     const musurf_param *param; /* whose limits hold; NULL: none but finite */
 } mu_picture_request;
 
+/* `count` texts, or, of one, that alone; borrowed. */
+_Bool mu_source_texts(const mu_place *place, int count, const char **out, mu_error *error);
+
 /* The finest level of a mipmap. `file`: the member that names it, relative to the document. */
 _Bool mu_source_picture(mu_mipmap *picture, const mu_place *file, const mu_picture_request *request,
                         mu_wrap wrap, mu_error *error);

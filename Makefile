@@ -75,7 +75,7 @@ install: all
 	ln -sf libmusurf.so.$(SOMAJOR) $(DESTDIR)$(PREFIX)/lib/libmusurf.so
 	$(INSTALL) -m 644 $(PUBLIC_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf
 	$(INSTALL) -m 644 $(DISTRIBUTION_HEADERS) $(DESTDIR)$(PREFIX)/include/musurf/core/bsdf
-	$(INSTALL) -m 644 $(wildcard scenes/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes
+	$(INSTALL) -m 644 $(wildcard scenes/*.json) scenes/brushed_map.png $(DESTDIR)$(PREFIX)/share/musurf/scenes
 	$(INSTALL) -d $(DESTDIR)$(PREFIX)/share/musurf/scenes/materials
 	$(INSTALL) -m 644 $(wildcard scenes/materials/*.json) $(DESTDIR)$(PREFIX)/share/musurf/scenes/materials
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' scripts/musurf.pc.in \

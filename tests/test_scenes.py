@@ -23,7 +23,7 @@ VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 SCENES = sorted(path for path in (ROOT / "scenes").glob("**/*.json") if path.name != "scene.schema.json")
 BEYOND_A_SCHEMA = ("there is no", "singular", "zero vector", "same point", "line of sight", "at most one light",
                    "must not be zero", "too many", "No such file", "last row", "is missing; the studio", "within 1e+09",
-                   "needs texture coordinates", "no transform that may vary", "not a mesh file")
+                   "needs texture coordinates", "is no formula", "no such file", "no transform that may vary", "not a mesh file")
 # Every kind of object, each key at least once.
 FULL = {
     "$schema": "x", "musurf": 1, "description": "all there is",

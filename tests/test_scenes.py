@@ -20,7 +20,7 @@ from command import ROOT, musurf, strict
 
 SCHEMA = json.loads((ROOT / "scenes/scene.schema.json").read_text())
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
-SCENES = sorted(path for path in (ROOT / "scenes").glob("**/*.json") if path.name != "scene.schema.json")
+SCENES = sorted(path for path in (ROOT / "scenes").glob("**/*.json") if path.name != "scene.schema.json" and path.parent.name != "materials")
 BEYOND_A_SCHEMA = ("there is no", "singular", "zero vector", "same point", "line of sight", "at most one light",
                    "must not be zero", "too many", "No such file", "last row", "is missing; the studio", "within 1e+09",
                    "needs texture coordinates", "is no formula", "no such file", "no transform that may vary", "not a mesh file")

@@ -15,7 +15,8 @@ from .properties import PropertyError, read
 
 ERRORS = (MaterialError, FileError, PluginError, PropertyError)
 SYMBOLIC = ("musurf: this loop or call is being recorded, and there are no values to shade yet: musurf shades evaluated wavefronts. Render "
-            "inside `with musurf_mitsuba.evaluated():`, which turns dr.JitFlag.SymbolicLoops and SymbolicCalls off")
+            "inside `with musurf_mitsuba.evaluated():`, which turns dr.JitFlag.SymbolicLoops and SymbolicCalls off. (Recorded calls go through every "
+            "BSDF that is alive: drop scenes with musurf before rendering others without evaluated().)")
 
 
 def lobes_of(mi):

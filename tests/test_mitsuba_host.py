@@ -5,6 +5,7 @@
 material file alike, textures and mesh attributes vary M per point, edits and flags are Mitsuba's."""
 import ctypes
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -262,6 +263,21 @@ class Host(unittest.TestCase):
         flipped = np.array([[1], [1], [-1]], dtype=np.float32)
         self.assertTrue(np.all(values(both, wo * flipped, wi * flipped)[0] == above))
         self.assertTrue(np.all(values(load(**SKEW), wo * flipped, wi * flipped)[0] == 0))
+
+
+class Installed(unittest.TestCase):
+    def test_finds_its_shared_objects(self):
+        """From a staged installation, with nothing said about where plugins are."""
+        with tempfile.TemporaryDirectory() as stage:
+            subprocess.run(["make", "install", f"BUILD={mitsuba_host.BUILD}", f"DESTDIR={stage}", "PREFIX=/usr"], cwd=mitsuba_host.ROOT, check=True,
+                           capture_output=True)
+            program = ("import mitsuba as mi; mi.set_variant('llvm_ad_rgb'); import musurf_mitsuba; "
+                       "print(musurf_mitsuba.__file__, mi.load_dict({'type': 'musurf', 'alpha': 0.2}))")
+            env = {k: v for k, v in os.environ.items() if k != "MUSURF_PLUGIN_PATH"}
+            done = subprocess.run([sys.executable, "-c", program], env=dict(env, PYTHONPATH=f"{stage}/usr/lib/musurf/mitsuba"), cwd=stage,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(done.stdout.startswith(stage) and "musurf.microfacet: ggx" in done.stdout, done.stdout)
 
 
 if __name__ == "__main__":

@@ -183,6 +183,7 @@ static int run(const struct family *f, const struct kind *k, const double *histo
         mu_closure_f c, simple;
         if (!mu_bind_f(s, w, varies(k) ? m : NULL, &c)) continue;
         mu_bind_f(single, w, varies(k) ? m : NULL, &simple);
+        const struct mu_kernel_f *const before = simple.kernel;
         if (k->blurs) mu_blur_f(&c, blur), mu_blur_f(&simple, blur);
         if (k->blurs || varies(k))
             back = returned(&c, DRAWS);
@@ -190,7 +191,7 @@ static int run(const struct family *f, const struct kind *k, const double *histo
             sides[below] = returned(&c, MANY);
         if (!k->blurs && !varies(k)) back = sides[below];
         double error;
-        const int widened = k->blurs && simple.alpha >= blur;
+        const int widened = simple.kernel != before;
         const double E = single_albedo(f, &simple, widened, &random, &error);
         const double off = fabs(E + (double)c.lobe.lost * back - 1);
         noise = fmax(noise, error);

@@ -3,6 +3,7 @@
 /* albedo_set.c: makes the tables of a surface, and chooses among them. */
 #include "core/bsdf/albedo_set.h"
 #include "core/bsdf/multiple.h"
+#include <string.h>
 
 #if MU_REAL_BITS == 24
 
@@ -57,12 +58,21 @@ size_t mu_albedo_set_bytes(const mu_definition *d) {
     return values_bytes(d) + grids_bytes(d) + padded(one > other ? one : other);
 }
 
-/* Of what blurring raises (mu_blur); a histogram's is not known here, so that some of its tables are alike. */
-static float least_roughness(const surface *s, const mu_definition *d) {
-    const double core = d->ndf == MU_TABULATED ? 0
-                        : d->ndf == MU_GTR     ? fmin(1, (double)s->alpha / s->unit)
-                                               : 1;
-    return (float)core * map_least(&s->map);
+/* The least roughness to which blurring raises a surface (mu_blur): asked of it, for only it knows what stands for a histogram. */
+static float least_roughness(const surface *s) {
+    float low = -30, high = 30;
+    for (int k = 0; k < 24; k++) {
+        const float middle = (low + high) / 2;
+        closure c;
+        MU(mu_bind)(s, (const float[]){0, 0, 1}, NULL, &c);
+        const map before = c.map;
+        MU(mu_blur)(&c, exp2f(middle));
+        if (memcmp(&before, &c.map, sizeof before) == 0)
+            low = middle;
+        else
+            high = middle;
+    }
+    return exp2f(high);
 }
 
 /* The next node, none much closer than nodes are; but where blurring reaches the larger roughness too, E bends. */
@@ -84,7 +94,7 @@ static void blurred_view(const surface *s, float blur, float v[4]) {
 
 static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used, size_t most) {
     const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
-    const float least = log2f(fmaxf(least_roughness(source->surface, source->definition), 1e-30f)),
+    const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f)),
                 last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
                 bend = least - 2 * log2f(out->level[0].frame.along), step = tilted ? tilted_step : 0;
     float at = fmaxf(least, tilted ? tilted_from : mu_albedo_nodes[0]);

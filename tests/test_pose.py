@@ -102,7 +102,23 @@ def posed(swell=0, lean=0, time=None, matrices=skin_matrices):
     return sum(w[:, None] * (p @ m.T)[:, :3] for w, m in zip(weights().T, matrices(time)))
 
 
-def glb():
+def ripples():
+    """Normals that are not the surface's, and what the first target adds to them."""
+    u, v = UVS.T
+    out = np.column_stack([POSITIONS[:, :2] / 0.6, 0.3 * np.sin(6 * np.pi * v)])
+    more = np.stack([0.3 * np.sin(4 * np.pi * u), 0 * u, 0.4 * np.cos(3 * v)], 1)
+    return (x.astype("<f4").astype(float) for x in (out / np.linalg.norm(out, axis=1, keepdims=True), more))
+
+
+def posed_normals(swell, time):
+    """By the cofactors of the mean matrix of each vertex."""
+    normals, more = ripples()
+    matrices = np.einsum("bij,vb->vij", np.array(skin_matrices(time))[:, :3, :3], weights())
+    turned = np.einsum("vij,vj->vi", np.linalg.inv(matrices).transpose(0, 2, 1), normals + swell * more)
+    return turned / np.linalg.norm(turned, axis=1, keepdims=True)
+
+
+def glb(normals=False):
     w = gltf.Writer()
     weight = np.column_stack([weights(), 0 * UVS[:, 0]])
     joints = np.tile(np.arange(4, dtype="<u2") % 3, (len(POSITIONS), 1))
@@ -110,6 +126,11 @@ def glb():
                                 "JOINTS_0": w.add(joints, gltf.SHORT), "WEIGHTS_0": w.add(weight)},
                  "indices": w.add(FACES.ravel(), gltf.INT),
                  "targets": [{"POSITION": w.add(target, bounds=True)} for target in (SWELL, LEAN)]}
+    if normals:
+        own, more = ripples()
+        primitive["attributes"]["NORMAL"] = w.add(own)
+        primitive["targets"][0]["NORMAL"] = w.add(more)
+        primitive["targets"][1]["NORMAL"] = w.add(0 * more)
     inverse = w.add([matrix(t=(0, 0, -h)).T for h in HEIGHTS])
     animations = [w.animation("Wave", [(2, "rotation", TIMES, TURNS), (2, "translation", TIMES, MOVES), (3, "rotation", TIMES, TWISTS)]),
                   w.animation("Breathe", [(0, "weights", TIMES, np.ravel(SWELLS))])]
@@ -121,9 +142,13 @@ def glb():
                     skins=[{"joints": [1, 2, 3], "inverseBindMatrices": inverse}])
 
 
-def obj(positions):
+def obj(positions, normals=None):
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in positions.tolist()] + [f"vt {u!r} {v!r}" for u, v in UVS.tolist()]
-    return "\n".join(lines + ["f " + " ".join(f"{i + 1}/{i + 1}" for i in face) for face in FACES]) + "\n"
+    corner = "{0}/{0}"
+    if normals is not None:
+        lines += [f"vn {x!r} {y!r} {z!r}" for x, y, z in normals.tolist()]
+        corner = "{0}/{0}/{0}"
+    return "\n".join(lines + ["f " + " ".join(corner.format(i + 1) for i in face) for face in FACES]) + "\n"
 
 
 def positions_of(file):
@@ -244,6 +269,16 @@ class Pose(unittest.TestCase):
             self.assertGreater(expected.std(), 0.01)
             self.assertLess((np.abs(found - expected) > 1e-3 * (1 + expected)).mean(), 0.01)
         self.assertGreater((np.abs(plain - tense) > 1e-3 * (1 + plain)).mean(), 0.05)
+
+    def test_normals(self):
+        """The file's own, which targets and bones change."""
+        (self.folder / "rippled.glb").write_bytes(glb(normals=True))
+        pose, time, swell = {"animation": "Wave", "time": 1.25, "morph": {"Swell": 0.7}}, 1.25, 0.7
+        (self.folder / "rippled.obj").write_text(obj(posed(swell, time=time), posed_normals(swell, time)))
+        found, expected = self.picture("rippled.glb", pose=pose), self.picture("rippled.obj")
+        self.assertLess((np.abs(found - expected) > 1e-3 * (1 + expected)).mean(), 0.01)
+        (self.folder / "rippled.obj").write_text(obj(posed(swell, time=time), posed_normals(0, time)))
+        self.assertGreater((np.abs(found - self.picture("rippled.obj")) > 1e-3 * (1 + found)).mean(), 0.05)
 
     def test_moments_from_the_command_line(self):
         """--frame of a numbered sequence, the first without; --pose-time."""

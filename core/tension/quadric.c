@@ -49,34 +49,38 @@ void mu_quadric_fit(mu_ground *g, const mu_plane *plane, uint32_t centre, const 
 
 _Bool mu_quadric_slopes(const mu_quadric *fit, int degree, double least, double slope[MU_QUADRIC_VALUES][2]) {
     const int terms = degree > 1 ? MU_QUADRIC_TERMS : 2;
-    double l[MU_QUADRIC_TERMS][MU_QUADRIC_TERMS], size[MU_QUADRIC_TERMS], z[2][MU_QUADRIC_TERMS];
+    double l[MU_QUADRIC_TERMS][MU_QUADRIC_TERMS], unit[MU_QUADRIC_TERMS], inverse[MU_QUADRIC_TERMS];
     for (int i = 0; i < terms; i++) {
-        size[i] = sqrt(fit->a[i][i]);
-        if (!(size[i] > 0)) return 0;
+        if (!(fit->a[i][i] > 0)) return 0;
+        unit[i] = 1 / sqrt(fit->a[i][i]);
         for (int j = 0; j <= i; j++) {
-            double sum = fit->a[i][j] / (size[i] * size[j]);
+            double sum = fit->a[i][j] * (unit[i] * unit[j]);
             for (int k = 0; k < j; k++) sum -= l[i][k] * l[j][k];
-            if (i == j && !(sum > least)) return 0;
-            l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
+            if (j < i) {
+                l[i][j] = sum * inverse[j];
+                continue;
+            }
+            if (!(sum > least)) return 0;
+            inverse[i] = 1 / sqrt(sum);
         }
     }
-    /* the first two rows of the inverse */
-    for (int c = 0; c < 2; c++) {
+    for (int c = 0; c < 2; c++) { /* a row of the inverse */
+        double z[MU_QUADRIC_TERMS];
         for (int i = 0; i < terms; i++) {
-            double sum = i == c;
-            for (int k = 0; k < i; k++) sum -= l[i][k] * z[c][k];
-            z[c][i] = sum / l[i][i];
+            double sum = i == c ? unit[c] : 0;
+            for (int k = 0; k < i; k++) sum -= l[i][k] * z[k];
+            z[i] = sum * inverse[i];
         }
         for (int i = terms; i-- > 0;) {
-            double sum = z[c][i];
-            for (int k = i + 1; k < terms; k++) sum -= l[k][i] * z[c][k];
-            z[c][i] = sum / l[i][i];
+            double sum = z[i];
+            for (int k = i + 1; k < terms; k++) sum -= l[k][i] * z[k];
+            z[i] = sum * inverse[i];
+        }
+        for (int i = 0; i < terms; i++) z[i] *= unit[i];
+        for (int k = 0; k < MU_QUADRIC_VALUES; k++) {
+            slope[k][c] = 0;
+            for (int i = 0; i < terms; i++) slope[k][c] += z[i] * fit->b[k][i];
         }
     }
-    for (int k = 0; k < MU_QUADRIC_VALUES; k++)
-        for (int c = 0; c < 2; c++) {
-            slope[k][c] = 0;
-            for (int i = 0; i < terms; i++) slope[k][c] += z[c][i] * fit->b[k][i] / (size[i] * size[c]);
-        }
     return 1;
 }

@@ -95,7 +95,43 @@ static void test_anything(void **state) {
     free(b);
 }
 
+/* A cone of very many triangles, each with its own texture coordinates at the tip: all pairs of them would take hours.
+ * Twice as large, it has M = 2 everywhere, to what rounding needles of 6e-5 leaves of it. */
+static void test_crowded_tips(void **state) {
+    enum { AROUND = 100000 };
+    const double turn = 2 * acos(-1.0) / AROUND;
+    uint32_t *corner = malloc(3 * AROUND * sizeof *corner);
+    double *rest = malloc(3 * (AROUND + 1) * sizeof *rest),
+           *deformed = malloc(3 * (AROUND + 1) * sizeof *deformed), *uv = malloc(6 * AROUND * sizeof *uv);
+    (void)state;
+    assert_true(corner && rest && deformed && uv);
+    for (int sharp = 0; sharp < 2; sharp++) {
+        for (size_t i = 0; i <= AROUND; i++) {
+            const double angle = turn * (double)i, p[3] = {cos(angle), sin(angle), 0},
+                         tip[3] = {0, 0, sharp ? 9 : 0.5};
+            memcpy(rest + 3 * i, i < AROUND ? p : tip, sizeof p);
+        }
+        for (size_t i = 0; i < 3 * (AROUND + 1); i++) deformed[i] = 2 * rest[i];
+        for (uint32_t i = 0; i < AROUND; i++) {
+            const double uvs[6] = {i, 0, i + 1, 0, i + 0.5, 1};
+            const uint32_t corners[3] = {i, (i + 1) % AROUND, AROUND};
+            memcpy(corner + 3 * (size_t)i, corners, sizeof corners);
+            memcpy(uv + 6 * (size_t)i, uvs, sizeof uvs);
+        }
+        mu_tension *tension =
+            mu_tension_make(&(mu_tension_input){AROUND + 1, AROUND, corner, rest, deformed, uv, uv});
+        assert_non_null(tension);
+        for (uint32_t p = 0; p < tension->points; p++)
+            for (int k = 0; k < 4; k++) assert_true(fabs(tension->point[p].m[k] - (k % 3 ? 0 : 2)) < 1e-9);
+        mu_tension_free(tension);
+    }
+    free(corner);
+    free(rest);
+    free(deformed);
+    free(uv);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_anything)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_anything), cmocka_unit_test(test_crowded_tips)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

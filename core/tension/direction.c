@@ -31,15 +31,14 @@ static _Bool normalise(double v[2]) {
 }
 
 /* The mean over the chart's triangles at the place; false if they cancel. */
-static _Bool find_mean(const mu_ground *g, uint32_t place, uint32_t point, const mu_plane *plane,
-                       double mean[2]) {
+static _Bool find_mean(const mu_ground *g, uint32_t point, const mu_plane *plane, double mean[2]) {
     mean[0] = mean[1] = 0;
     double weight = 0;
-    for (uint32_t i = g->first[place]; i < g->first[place + 1]; i++) {
+    for (uint32_t i = g->first[point]; i < g->first[point + 1]; i++) {
         const uint32_t corner = g->corner[i];
         const mu_part *part = &g->part[corner / 3];
         double turn[2];
-        if (g->tension->corner[corner] != point || !mu_part_faces(part, plane->n)) continue;
+        if (!mu_part_faces(part, plane->n)) continue;
         mu_site_turned(plane, part, turn);
         for (int k = 0; k < 2; k++) mean[k] += part->weight[corner % 3] * turn[k];
         weight += part->weight[corner % 3];
@@ -103,7 +102,7 @@ _Bool mu_direction_find(mu_ground *g, uint32_t point, uint32_t centre, int chart
         in_frame(&site->rest, xy, direction);
         return 1;
     }
-    const _Bool meaning = find_mean(g, mu_ground_place(g, centre), point, &site->plane, mean);
+    const _Bool meaning = find_mean(g, point, &site->plane, mean);
     if (meaning) memcpy(direction, mean, sizeof mean);
     if (!uvs || !site->degree) return 1;
     _Bool found = alone && site->degree == 2 && site->rings == 1; /* the last patch is still the site's */

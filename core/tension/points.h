@@ -10,7 +10,6 @@ typedef struct mu_chart_point {
     uint32_t corner; /* the first one that is it */
     int chart;
     _Bool has_m;         /* one of its triangles does */
-    uint32_t next;       /* the next point at its place */
     double weight;       /* of its triangles' corners: what its direction weighs among charts */
     double direction[2]; /* of u, in the frame of the site */
     double shared[2];    /* the same, once charts have agreed */

@@ -24,32 +24,34 @@ void mu_site_turned(const mu_plane *plane, const mu_part *part, double turn[2]) 
     turn[0] = mu_shape_dot(turned, plane->s1), turn[1] = mu_shape_dot(turned, plane->s2);
 }
 
+/* Along the edge from a corner to the next. */
+static void put_axes(const mu_ground *g, uint32_t corner, mu_plane *plane) {
+    const uint32_t next = corner - corner % 3 + (corner + 1) % 3;
+    const double *p = g->in->rest + 3 * (size_t)g->in->corner[corner],
+                 *q = g->in->rest + 3 * (size_t)g->in->corner[next];
+    double along[3], size = 0;
+    for (int k = 0; k < 3; k++) along[k] = q[k] - p[k];
+    const double up = mu_shape_dot(along, plane->n);
+    for (int k = 0; k < 3; k++) along[k] -= up * plane->n[k], size += along[k] * along[k];
+    for (int k = 0; k < 3; k++) plane->s1[k] = along[k] / sqrt(size);
+    mu_shape_cross(plane->n, plane->s1, plane->s2);
+}
+
 _Bool mu_site_plane(const mu_ground *g, uint32_t place, const double normal[3], uint32_t own, _Bool whole,
                     mu_plane *plane) {
     const double length = sqrt(mu_shape_dot(normal, normal));
     _Bool found = 0;
     if (!(length > 0)) return 0;
     for (int k = 0; k < 3; k++) plane->n[k] = normal[k] / length;
-    for (uint32_t i = g->first[place]; i < g->first[place + 1]; i++) {
-        const uint32_t corner = g->corner[i];
-        if ((own != MU_NO_POINT && g->tension->corner[corner] != own) || !(g->part[corner / 3].weight[0] > 0))
-            continue;
-        if (!mu_part_faces(&g->part[corner / 3], plane->n)) {
-            if (whole) return 0;
-            continue;
+    for (uint32_t p = mu_ground_begin(g, place, own); p != MU_NO_POINT; p = mu_ground_next(g, own, p))
+        for (uint32_t i = g->first[p]; i < g->first[p + 1]; i++) {
+            const mu_part *part = &g->part[g->corner[i] / 3];
+            if (!(part->weight[0] > 0)) continue;
+            const _Bool faces = mu_part_faces(part, plane->n);
+            if (faces && !found) put_axes(g, g->corner[i], plane);
+            if (!faces && whole) return 0;
+            found |= faces;
         }
-        if (found) continue;
-        const uint32_t next = corner - corner % 3 + (corner + 1) % 3;
-        const double *p = g->in->rest + 3 * (size_t)g->in->corner[corner],
-                     *q = g->in->rest + 3 * (size_t)g->in->corner[next];
-        double along[3], size = 0;
-        for (int k = 0; k < 3; k++) along[k] = q[k] - p[k];
-        const double up = mu_shape_dot(along, plane->n);
-        for (int k = 0; k < 3; k++) along[k] -= up * plane->n[k], size += along[k] * along[k];
-        for (int k = 0; k < 3; k++) plane->s1[k] = along[k] / sqrt(size);
-        mu_shape_cross(plane->n, plane->s1, plane->s2);
-        found = 1;
-    }
     return found;
 }
 
@@ -63,18 +65,21 @@ static void part_log(const mu_site *site, const mu_part *part, double out[3]) {
     mu_site_turn(part->log, turn, out);
 }
 
+/* Without a plane the u directions stand for it, which only one chart has. */
 static void find_mean(const mu_ground *g, uint32_t place, uint32_t own, mu_site *site) {
     const double *n = site->flat ? site->plane.n : NULL;
+    const uint32_t which = n ? MU_NO_POINT : own;
     double sum[3] = {0, 0, 0}, weight = 0;
-    for (uint32_t i = g->first[place]; i < g->first[place + 1]; i++) {
-        const uint32_t corner = g->corner[i];
-        const mu_part *part = &g->part[corner / 3];
-        double log[3];
-        if (!mu_part_faces(part, n) || (!n && g->tension->corner[corner] != own)) continue;
-        part_log(site, part, log);
-        for (int k = 0; k < 3; k++) sum[k] += part->weight[corner % 3] * log[k];
-        weight += part->weight[corner % 3];
-    }
+    for (uint32_t p = mu_ground_begin(g, place, which); p != MU_NO_POINT; p = mu_ground_next(g, which, p))
+        for (uint32_t i = g->first[p]; i < g->first[p + 1]; i++) {
+            const uint32_t corner = g->corner[i];
+            const mu_part *part = &g->part[corner / 3];
+            double log[3];
+            if (!mu_part_faces(part, n)) continue;
+            part_log(site, part, log);
+            for (int k = 0; k < 3; k++) sum[k] += part->weight[corner % 3] * log[k];
+            weight += part->weight[corner % 3];
+        }
     for (int k = 0; k < 3; k++) site->log[k] = sum[k] / weight;
 }
 

@@ -73,7 +73,9 @@ static _Bool point_of(mu_build *b, uint32_t triangle, size_t corner, int chart, 
     if (*latest != MU_NO_POINT && is_same(b, *latest, at, chart)) return *number = *latest, 1; /* most are */
     uint64_t key[5] = {(uint64_t)b->place[vertex] << 4 | (uint64_t)chart};
     for (size_t k = 0; k < 4; k++) key[1 + k] = mu_index_word(uvs[k / 2] ? uvs[k / 2][2 * at + k % 2] : 0);
-    *latest = *number = mu_index_of(&b->indexed, key);
+    *number = mu_index_of(&b->indexed, key);
+    if (*number == UINT32_MAX) return 0;
+    *latest = *number;
     if (*number < b->out->points) return 1;
     if (b->out->points == b->room && !grow(b)) return 0;
     b->points[*number] = (mu_chart_point){.corner = (uint32_t)at, .chart = chart};
@@ -200,7 +202,7 @@ static _Bool build(mu_build *b) {
     b->latest = malloc(((size_t)b->places.count + 1) * sizeof *b->latest);
     if (b->latest) memset(b->latest, 0xff, ((size_t)b->places.count + 1) * sizeof *b->latest);
     if (!b->normals || !b->latest || triangles > UINT32_MAX / 3 ||
-        !mu_index_make(&b->indexed, 5, (uint32_t)(3 * triangles)))
+        !mu_index_make(&b->indexed, 5, b->places.count + b->places.count / 8))
         return 0;
     if (!make_faces(b) || !make_points(b)) return 0;
     finish_faces(b);

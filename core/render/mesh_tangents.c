@@ -111,12 +111,16 @@ static void accumulate(const mu_mesh *mesh, const signed char *sign, mu_dvec3 *s
     }
 }
 
+/* Vertices at one place beyond which pairs of them are too many to look at: poles, at which u goes anywhere. */
+#define MU_CROWD 64
+
 /* Within the run order[first..last), each takes the sum over those that are within 60 degrees of its own. */
 static void share(const uint32_t *order, uint32_t first, uint32_t last, const mu_dvec3 *sums,
                   const signed char *hand, mu_dvec3 *shared) {
     for (uint32_t i = first; i < last; ++i) {
         const mu_dvec3 own = sums[order[i]];
-        shared[order[i]] = mu_d3(0, 0, 0);
+        shared[order[i]] = last - first > MU_CROWD ? own : mu_d3(0, 0, 0);
+        if (last - first > MU_CROWD) continue;
         for (uint32_t j = first; j < last; ++j) {
             const mu_dvec3 other = sums[order[j]];
             if (hand[order[j]] == hand[order[i]] &&

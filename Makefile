@@ -105,6 +105,7 @@ help:
 	@echo 'make bench      speed, as ratios measured in one run'
 	@echo 'make efficiency masking and samplers against the paper'"'"'s own (Figures 9 and 10); QUICK=1: a glance; README=1: also there'
 	@echo 'make geometry   mirror facets rendered by POV-Ray beside the material fitted to them; QUICK=1: a glance'
+	@echo 'make geometry-tension  the same of plates deformed as a whole, beside meshes with "tension": highlights; QUICK=1: a glance'
 	@echo 'make figures    the paper'"'"'s Figures 6, 7, 8 (scenes/figures) and an inflating balloon into $(BUILD)/figures; QUICK=1: a glance'
 	@echo 'make costs      what accuracy costs on explicit surfaces: error against time and memory; QUICK=1: a glance'
 	@echo 'make report     all of these and the full cross-check, measured and on one page, with what is claimed on top; QUICK=1'

@@ -15,6 +15,13 @@ geometry: deps
 run-geometry: all
 	@BUILD=$(BUILD) $(PYTHON) scripts/geometry-pair -o $(BUILD)/geometry $(if $(QUICK),--quick)
 
+# A plate of facets deformed as a whole in POV-Ray beside the deformed mesh with "tension".
+.PHONY: geometry-tension run-geometry-tension
+geometry-tension: deps
+	@$(MAKE) --no-print-directory run-geometry-tension
+run-geometry-tension: all
+	@BUILD=$(BUILD) $(PYTHON) scripts/geometry-tension -o $(BUILD)/geometry-tension $(if $(QUICK),--quick)
+
 # Figures 6, 7 and 8 of the paper and a balloon of 24 frames: makes the meshes, renders scenes/figures.
 .PHONY: figures run-figures
 figures: deps

@@ -52,7 +52,7 @@ class Pair(unittest.TestCase):
         cls.whole, cls.beyond, cls.angle = cls.camera.sees(cls.plate, render.rise([cls.surface]))
 
     def facets(self, sky, bounces):
-        text = pair.povray_scene(self.plate, self.camera, "period.inc", sky, bounces)
+        text = pair.povray_scene(self.plate, self.camera, "period.inc", pair.povray_sky(sky), bounces)
         return render.render_geometry(text, self.folder, "facets", self.camera, FINE)[0]
 
     def shaded(self, sky, m=M, scattering="none"):

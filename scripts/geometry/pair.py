@@ -22,6 +22,11 @@ class Plate:
     cells: int     # of one period
     length: float  # of an edge of the square
 
+    @property
+    def outline(self):
+        """[2, 2]: maps the square to the plate: it is cut to the square, whatever M."""
+        return np.eye(2)
+
     def periods(self):
         """([k, 2]: where the periods that reach into the square begin, M (cells i, cells j); which lie within)"""
         edges = self.cells * self.m.T  # the period's two edges
@@ -37,15 +42,15 @@ class Plate:
 class Camera:
     """A pinhole that looks along the unit vector `ahead`; width / height pixels, square."""
 
-    def __init__(self, length, width, height):
-        self.eye, self.aim = length * np.array(EYE), length * np.array(AIM)
+    def __init__(self, length, width, height, eye=EYE, aim=AIM, fov=FOV):
+        self.eye, self.aim, self.fov = length * np.array(eye), length * np.array(aim), fov
         self.width, self.height = width, height
         ahead = self.aim - self.eye
         self.ahead = ahead / np.linalg.norm(ahead)
         right = np.cross(self.ahead, (0, 0, 1))
         self.right = right / np.linalg.norm(right)
         self.up = np.cross(self.right, self.ahead)
-        self.tall = 2 * np.tan(np.radians(FOV) / 2)
+        self.tall = 2 * np.tan(np.radians(fov) / 2)
         self.wide = self.tall * width / height
 
     def rays(self, columns, rows):
@@ -59,13 +64,14 @@ class Camera:
         Facets near the rim lack neighbours that would mask them, and stand out against the surrounding: as far as the
         range of heights, `rise`, reaches at the flattest view, pixels are neither.
         """
-        corners = plate.length / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        margin = rise * np.linalg.norm(corners - self.eye[:2], axis=1).max() / self.eye[2]
+        corners = plate.length / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) @ plate.outline.T
+        back = np.linalg.inv(plate.outline)
+        margin = rise * np.linalg.norm(corners - self.eye[:2], axis=1).max() / self.eye[2] * np.linalg.norm(back, 2)
         columns, rows = np.meshgrid(np.arange(self.width + 1.0), np.arange(self.height + 1.0))
         d = self.rays(columns, rows)
         down = d[..., 2] < 0
         t = -self.eye[2] / np.where(down, d[..., 2], -1)
-        away = np.where(down, np.abs(self.eye[:2] + t[..., None] * d[..., :2]).max(-1) - plate.length / 2, np.inf)
+        away = np.where(down, np.abs((self.eye[:2] + t[..., None] * d[..., :2]) @ back.T).max(-1) - plate.length / 2, np.inf)
 
         def all_corners(where):
             return where[:-1, :-1] & where[1:, :-1] & where[:-1, 1:] & where[1:, 1:]
@@ -78,18 +84,23 @@ def vector(p):
     return "<" + ",".join(format(float(x), ".17g") for x in p) + ">"
 
 
-def povray_scene(plate, camera, mesh, environment, bounces):
-    """Text of the POV-Ray scene. `mesh` is the period's mesh2 file, `environment` the path of an EXR or HDR image. After `bounces` reflections light is lost.
+def povray_sky(environment):
+    """The path of an EXR or HDR image, or None for white, around the scene.
 
     POV-Ray's spherical map has its pole along y and starts elsewhere: two quarter turns bring it to musurf's convention
     (+z up, the middle column towards +x). That this is right is measured: where both see the sky, they agree.
     """
     sky = "rgb 1" if environment is None else f'image_map {{ {environment.suffix[1:]} "{environment}" map_type 1 interpolate 2 }} rotate x*90 rotate z*180'
+    return f"sky_sphere {{ pigment {{ {sky} }} }}"
+
+
+def povray_scene(plate, camera, mesh, around, bounces):
+    """Text of the POV-Ray scene. `mesh` is the period's mesh2 file, `around` the text of what lights it. After `bounces` reflections light is lost."""
     text = [f"// musurf: {plate.name}, M = {plate.m.tolist()}", "#version 3.7;",
             f"global_settings {{ assumed_gamma 1 max_trace_level {bounces + 1} }}",
             f"camera {{ perspective location {vector(camera.eye)} direction {vector(camera.ahead)}",
             f"  right {vector(camera.right * camera.wide)} up {vector(camera.up * camera.tall)} }}",
-            f"sky_sphere {{ pigment {{ {sky} }} }}",
+            around,
             f'#declare Period = object {{ #include "{mesh}"',
             "  texture { pigment { rgb 0 } finish { ambient 0 emission 0 diffuse 0 reflection 1 } } }"]
     half = plate.length / 2
@@ -111,7 +122,7 @@ def musurf_scene(plate, camera, mesh, environment, material):
     light = {"type": "constant", "radiance": 1} if environment is None else {"type": "environment", "image": str(environment)}
     return json.dumps({
         "musurf": 1,
-        "camera": {"type": "perspective", "position": camera.eye.tolist(), "target": camera.aim.tolist(), "up": [0, 0, 1], "fov": FOV},
+        "camera": {"type": "perspective", "position": camera.eye.tolist(), "target": camera.aim.tolist(), "up": [0, 0, 1], "fov": camera.fov},
         "film": {"width": camera.width, "height": camera.height, "filter": "box", "pixels": "float"},
         "integrator": {"depth": 2},
         "meshes": {"plate": {"file": str(mesh)}}, "materials": {"plate": dict(material, transform=(plate.m @ material.get("transform", np.eye(2))).tolist())},

@@ -61,7 +61,7 @@ def one(plate, camera, surfaces, material, sky, options, musurf, folder, progres
         for k, surface in enumerate(surfaces):
             progress.say(f"{plate.name}: facets of surface {k + 1}, {'one reflection' if bounces == 1 else 'all reflections'}")
             render.write_mesh(musurf, surface, plate.m, folder / "period.inc")
-            text = pair.povray_scene(plate, camera, "period.inc", sky, bounces)
+            text = pair.povray_scene(plate, camera, "period.inc", pair.povray_sky(sky), bounces)
             image, used = render.render_geometry(text, folder, f"{slug}-{bounces}", camera, options.fine)
             took["povray"] += used["cpu_seconds"]
             found.append(image)

@@ -51,6 +51,7 @@ NEEDS = {
     "attributes": {"objects": [{"mesh": "square", "material": {"material": "musurf.microfacet", "alpha": {"attribute": "age"}}}],
                    "meshes": {"square": {"file": "square.ply"}}},
     "expressions": with_material(alpha={"expression": "0.1 + u*u"}),
+    "blends": with_material(ndf="gtr", gamma={"expression": "1 + u"}),
     "footprints": with_material(ndf="discrete_ggx"),
     "environment": {"lights": [{"type": "environment", "image": "sky.exr"}]},
     "studio": {"lights": [{"type": "studio"}]},

@@ -7,71 +7,14 @@ Pictures of a pair use the same random numbers. Where the same M is handed to th
 """
 import json
 import math
-import pathlib
-import struct
 import sys
-import tempfile
 import unittest
-import zlib
 
 import numpy as np
 
 import exr
 from command import microfacet, musurf, strict
-
-M = [[1, 2], [-0.5, 1.5]]
-FLAT = {"u": "u", "v": "v"}  # the Jacobian of the identity: M goes through slots
-
-
-def write_png(file, codes):
-    """8-bit, grey or RGB."""
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    rows, columns = codes.shape[:2]
-    raw = b"".join(b"\0" + row.tobytes() for row in codes.astype(np.uint8))
-    file.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 2 * (codes.ndim == 3), 0, 0, 0))
-                     + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
-
-
-class Pictures(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-
-    def texture(self, name, planes):
-        exr.write(self.folder / name, {c: np.asarray(p, np.float32) for c, p in planes.items()})
-        return {"texture": name}
-
-    def scene(self, material, samples=4, size=(40, 30), **item):
-        item = item or {"shape": "rectangle", "size": [2, 2]}
-        scene = {"camera": {"position": [0.5, -2.5, 2], "target": [0, 0, 0], "fov": 40},
-                 "film": {"width": size[0], "height": size[1], "pixels": "float"}, "integrator": {"samples": samples, "depth": 2},
-                 "meshes": {"m": {"file": "m.ply"}} if "mesh" in item else {},
-                 "objects": [dict(item, material=material)],
-                 "lights": [{"type": "studio"}, {"type": "rectangle", "transform": [{"rotate": [1, 0, 0, 180]}, {"translate": [1, 2, 3]}]}]}
-        (self.folder / "scene.json").write_text(json.dumps(scene))
-        return self.folder / "scene.json"
-
-    def picture(self, material, *more, **scene):
-        done = musurf("render", self.scene(material, **scene), "-o", self.folder / "out.exr", "--progress", "none", *more)
-        self.assertEqual(done.returncode, 0, done.err)
-        channels = exr.read(self.folder / "out.exr")[1]
-        picture = np.stack([channels[c] for c in "RGB"])
-        self.assertGreater(picture.std(), 0.01)
-        return picture
-
-    def metal(self, **parameters):
-        return microfacet(sampler="visible", fresnel={"conductor": "Ag"}, **parameters)
-
-    def refused(self, material, *words, **scene):
-        done = musurf("render", self.scene(material, **scene), "-o", self.folder / "out.exr", "--progress", "none")
-        self.assertEqual(done.returncode, 2, done.err)
-        line = done.err.strip()
-        self.assertEqual(len(line.splitlines()), 1, line)
-        for word in words:
-            self.assertIn(word, line)
-        return line
+from plates import FLAT, M, Pictures, write_png
 
 
 class Textures(Pictures):
@@ -178,68 +121,6 @@ class Directions(Pictures):
         self.assertLess(off.mean(), 0.01)
 
 
-class Maps(Pictures):
-    def test_formula_is_the_named_map(self):
-        for transform in ([[1, 0], [0, 1]], M):
-            named, formula = {"map": "power_shear", "amount": 2, "exponent": 5}, {"u": "u", "v": "v + 2*u^5"}
-            self.assertTrue(np.array_equal(*(self.picture(self.metal(alpha=0.25, transform=transform, jacobian=j)) for j in (named, formula))))
-
-    def test_displacement_is_its_formula(self):
-        """A spline through the texels of 2 u^5, whose derivative is off by h^2/6 of its third one: 2e-4 for u = 1."""
-        u = (np.arange(256) + 0.5) / 256
-        self.texture("d.exr", {"X": np.zeros((4, 256)), "Y": np.tile(2 * u**5, (4, 1))})
-        formula = self.picture(self.metal(alpha=0.25, jacobian={"u": "u", "v": "v + 2*u^5"}))
-        got = self.picture(self.metal(alpha=0.25, jacobian={"displacement": "d.exr", "channels": ["X", "Y"], "wrap": "clamp"}))
-        off = np.abs(got - formula) > 0.01 * formula
-        self.assertLess(off.mean(), 0.02)
-        ramp = np.add.outer(-np.arange(64), 2 * np.arange(64)) / 64  # v grows upwards
-        self.texture("r.exr", {"X": ramp, "Y": -ramp})
-        linear = self.picture(self.metal(alpha=0.25, jacobian={"u": "u + 0.25*(2*u + v)", "v": "v - 0.25*(2*u + v)"}))
-        got = self.picture(self.metal(alpha=0.25, jacobian={"displacement": "r.exr", "channels": ["X", "Y"], "scale": 0.25, "wrap": "clamp"}))
-        off = np.abs(got - linear) > 1e-3 * linear
-        self.assertLess(off.mean(), 2 * 4 / 64)  # but for two texels at each edge, where the ramp ends
-
-
-class Filtering(Pictures):
-    """A plate under a sun alone, so that nothing but the texture is sampled; a pixel sees some 45 texels in a row."""
-
-    def plate(self, material, samples):
-        scene = {"camera": {"position": [0, -3, 2.6], "target": [0, 0, 0], "fov": 34},
-                 "film": {"width": 20, "height": 15, "pixels": "float", "filter": "box"}, "integrator": {"samples": samples, "depth": 1},
-                 "objects": [{"shape": "rectangle", "material": material}],
-                 "lights": [{"type": "directional", "direction": [0.1, 3, 2.7], "irradiance": [1, 1, 1]}]}
-        (self.folder / "plate.json").write_text(json.dumps(scene))
-        done = musurf("render", self.folder / "plate.json", "-o", self.folder / "plate.exr", "--progress", "none")
-        self.assertEqual(done.returncode, 0, done.err)
-        return exr.read(self.folder / "plate.exr")[1]["G"].astype(float)
-
-    def test_few_samples_do_not_alias_and_many_converge(self):
-        """Against 4096 unfiltered samples: one filtered sample is nearer than one unfiltered; where roughness varies, by far,
-        once what one sample does to a plate without texture is taken off; of 16 neither kind is worse than the other by more
-        than scatter; and of 1024 both are the same, for neighbours differ by more than 1/1024."""
-        rng = np.random.default_rng(3)
-        angle = rng.uniform(-0.6, 0.6, (128, 128))
-        strong, mild = np.where(rng.random((128, 128)) < 0.5, 0.1, 0.4), rng.uniform(0.2, 0.3, (128, 128))
-        self.texture("turned.exr", {"X": np.cos(angle), "Y": np.sin(angle)})
-        cases = [("alpha", self.texture(name, {"Y": plane}), {}, math.sqrt(np.mean(plane**2)))
-                 for name, plane in (("strong.exr", strong), ("mild.exr", mild))]
-        cases.append(("rotation", {"direction_map": "turned.exr", "channels": ["X", "Y"]}, dict(alpha_x=0.08, alpha_y=0.4), None))
-        for parameter, source, others, level in cases:
-            def made(samples, value=None, **how):
-                value = value or source | {"scale": [5, 5]} | how
-                return self.plate(microfacet(ndf="beckmann", sampler="visible", **others, **{parameter: value}), samples)
-
-            def error(picture, of):
-                return math.sqrt(np.mean((picture - of)**2) / np.mean(of**2))
-            truth = made(4096, filter="none")
-            with self.subTest(source):
-                one, point = error(made(1), truth), error(made(1, filter="none"), truth)
-                floor = error(made(1, level), made(256, level)) if level else 0
-                self.assertLess(one**2 - floor**2, (point**2 - floor**2) / (4 if level else 1))
-                self.assertLess(error(made(16), truth), 1.1 * error(made(16, filter="none"), truth))
-                self.assertLess(error(made(1024), made(1024, filter="none")), 1e-4)
-
-
 class Attributes(Pictures):
     def ply(self, name, vertices, faces, properties):
         columns = [x for x in properties]
@@ -328,8 +209,11 @@ class Refusals(Pictures):
             (dict(alpha={"direction_map": "good.exr"}), "gives an angle, which alpha is not"),
             (dict(alpha={"attribute": "age"}), "$.objects[0]", "only a mesh has"),
             (dict(alpha={"expression": "0.1 +"}), "alpha.expression", "no formula", "at its end"),
-            (dict(ndf="gtr", gamma={"expression": "1 + u"}), "material.gamma", "cannot vary"),
-            (dict(ndf="gtr", alpha={"expression": "0.1 + u"}), "material.alpha", "cannot vary here", "shape"),
+            (dict(ndf="gtr", gamma={"expression": "1 - 2*u"}), "material.gamma", "at least 0"),
+            (dict(ndf="gtr", gamma={"expression": "1 + u"}, alpha={"expression": "0.1 + u"}), "material.alpha", "cannot vary here", "shape"),
+            (dict(ndf="gtr", gamma={"attribute": "age"}), "material.gamma", "comes from vertices"),
+            (dict(ndf="phong", exponent={"expression": "1 + u"}, rotation={"expression": "u"}, theta_x={"expression": "u"}), "cannot vary too"),
+            (dict(fresnel={"schlick": {"texture": "good.exr"}}), "fresnel.schlick", "cannot vary over the surface"),
             (dict(alpha={"texture": "bad.exr", "range": [0.5, 1]}, rotation={"expression": "u"}), "material.rotation", "beside a picture only transform"),
             (dict(jacobian={"u": "u"}), "jacobian.v"),
             (dict(jacobian={"u": "u", "v": "v + w"}), "jacobian.v", "no formula", "knows u, v, pi"),

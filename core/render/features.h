@@ -26,6 +26,7 @@
     X(TEXTURES,              "textures",              "OpenImageIO, and parameters from pictures, averaged over a pixel, in slots")  \
     X(ATTRIBUTES,            "attributes",            "properties of a mesh file's vertices, and parameters from them, in slots")    \
     X(EXPRESSIONS,           "expressions",           "parameters from formulas of texture coordinates, in slots")     \
+    X(BLENDS,                "blends",                "materials compiled at several values of a parameter that the plugin wants constant") \
     X(FOOTPRINTS,            "footprints",            "the part of the texture that a pixel covers, per hit, in slots")  \
     X(ENVIRONMENT,           "environment",           "OpenImageIO, the image and its sampling table")                 \
     X(STUDIO,                "studio",                "the studio and its sampling table")                             \

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/render/material_file.h"
+#include "core/render/blend.h"
 #include "core/render/varying.h"
 
 /* What the plugin says while compiling goes to the place of the parameter it speaks of. */
@@ -15,26 +16,30 @@ typedef struct listener {
     const musurf_material_type *type;
     const mu_place *place;
     mu_error *error;
+    uint32_t param; /* that the last error was about */
 } listener;
 
 static void on_message(void *context, musurf_severity severity, uint32_t param, const char *text) {
-    const listener *l = context;
+    listener *l = context;
     const musurf_param *p = mu_type_find_id(l->type, param);
+    if (severity == MUSURF_ERROR) l->param = param;
     mu_error warning = {.text = ""};
     mu_error *out = severity == MUSURF_ERROR ? l->error : &warning;
     mu_settings_fail(l->place, p ? p->name : "", out, text ? text : "");
     if (severity == MUSURF_WARNING) mu_warn(l->error, "%s", warning.text);
 }
 
-static _Bool compile(mu_material *material, const mu_settings *settings, const mu_place *place,
+/* refused, or NULL: the parameter that may not vary. */
+static _Bool compile(mu_material *material, const mu_settings *settings, const mu_place *place, uint32_t *refused,
                      mu_error *error) {
-    listener l = {material->type, place, error};
+    listener l = {material->type, place, error, MUSURF_NO_PARAM};
     const musurf_host host = {
         .size = sizeof host, .abi_minor = MUSURF_ABI_MINOR, .context = &l, .message = on_message};
     const musurf_result result =
         material->type->compile(&host, settings->items, settings->count, &material->compiled);
     if (result == MUSURF_OK && material->compiled) return 1;
     material->compiled = NULL;
+    if (result == MUSURF_UNSUPPORTED && refused) *refused = l.param;
     if (result == MUSURF_NO_MEMORY) return mu_place_fail(place, error, "not enough memory for this material");
     return mu_place_fail(place, error, "%s refused this material (result %d) without saying why",
                          material->type->id, (int)result);
@@ -73,7 +78,7 @@ static _Bool vary_transform(mu_material *material, mu_settings *settings, const 
     if (setting) {
         /* Once as it stands: the plugin judges the constant part (is it singular?), which it will not see
          * again. */
-        if (!compile(material, settings, place, error)) return 0;
+        if (!compile(material, settings, place, NULL, error)) return 0;
         material->type->release(material->compiled);
         material->compiled = NULL;
         for (int i = 0; i < 4; i++)
@@ -118,7 +123,7 @@ static uint64_t digest_of(const mu_settings *settings) {
         }
     for (size_t i = 0; i < settings->source_count; i++)
         digest = digest_picture(digest, &settings->sources[i].picture);
-    return digest;
+    return digest_picture(digest, &settings->blended.picture);
 }
 
 /* The plugin's footprint: the parameter of that kind that may vary. */
@@ -131,11 +136,11 @@ static const musurf_param *find_footprint(const musurf_material_type *type) {
 }
 
 /* Compiled once as it stands; what asks for footprints then is compiled again, with slots for them. */
-static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_place *place,
-                         mu_error *error) {
+static _Bool compile_once(mu_material *material, mu_settings *settings, const mu_place *place, uint32_t *refused,
+                          mu_error *error) {
     const musurf_param *p = find_footprint(material->type);
     material->one_footprint = p && mu_settings_find(settings, p);
-    if (!compile(material, settings, place, error) || !describe(material, place, error)) return 0;
+    if (!compile(material, settings, place, refused, error) || !describe(material, place, error)) return 0;
     if (!p || material->one_footprint || !(material->plan.needs & MUSURF_NEEDS_FOOTPRINT)) return 1;
     musurf_setting *setting = mu_settings_add(settings, p);
     setting->source = MUSURF_SLOT;
@@ -144,7 +149,56 @@ static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_
     material->type->release(material->compiled);
     material->compiled = NULL;
     material->footprints = 1;
-    return compile(material, settings, place, error) && describe(material, place, error);
+    return compile(material, settings, place, NULL, error) && describe(material, place, error);
+}
+
+/* All that its materials ask for together. */
+static void join_plans(musurf_plan *plan, const musurf_plan *other) {
+    if (other->closure_bytes > plan->closure_bytes) plan->closure_bytes = other->closure_bytes;
+    if (other->closure_alignment > plan->closure_alignment) plan->closure_alignment = other->closure_alignment;
+    plan->lobes |= other->lobes, plan->needs |= other->needs;
+    plan->table_bytes += other->table_bytes, plan->material_bytes += other->material_bytes;
+}
+
+/* At each of the values between which it is blended. */
+static _Bool compile_blend(mu_material *material, mu_settings *settings, const mu_place *place, uint32_t *refused,
+                           mu_error *error) {
+    mu_blend *blend = material->blend;
+    double *const value = settings->values[mu_settings_find(settings, blend->source.param) - settings->items];
+    *value = blend->knot[0];
+    if (!compile_once(material, settings, place, refused, error)) return 0;
+    blend->compiled[0] = material->compiled;
+    const musurf_plan first = material->plan;
+    musurf_plan all = first;
+    for (int i = 1; i < blend->count; i++) {
+        *value = blend->knot[i];
+        const _Bool good = compile(material, settings, place, NULL, error) && describe(material, place, error);
+        blend->compiled[i] = material->compiled;
+        join_plans(&all, &material->plan);
+        material->compiled = blend->compiled[0];
+        if (!good) return 0;
+    }
+    material->plan = all;
+    return 1;
+}
+
+static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_place *place, uint32_t *refused,
+                         mu_error *error) {
+    if (settings->blended.param && !(material->blend = mu_blend_make(&settings->blended, place, error))) return 0;
+    return material->blend ? compile_blend(material, settings, place, refused, error)
+                           : compile_once(material, settings, place, refused, error);
+}
+
+/* What the plugin does not take in a slot is blended instead. */
+static _Bool compile_somehow(mu_material *material, mu_settings *settings, const mu_place *place, mu_error *error) {
+    uint32_t refused = MUSURF_NO_PARAM;
+    mu_error first = *error;
+    if (compile_all(material, settings, place, &refused, &first)) return 1;
+    if (refused == MUSURF_NO_PARAM || material->blend || !mu_settings_blend(settings, refused)) {
+        *error = first;
+        return 0;
+    }
+    return compile_all(material, settings, place, NULL, error);
 }
 
 /* What draws directions is the renderer's to choose where the material does not say: it asks the plugin to measure. */
@@ -184,7 +238,7 @@ static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_pl
         settings.source_count && material->type->extension && material->type->extension(MUSURF_MAP_ID);
     if ((jacobian.value || material->tension) && !composes)
         good = good && vary_transform(material, &settings, place, error);
-    good = good && compile_all(material, &settings, place, error);
+    good = good && compile_somehow(material, &settings, place, error);
     if (good && settings.source_count)
         good = (material->varying = mu_varying_make(&settings, material->compiled, place, error)) != NULL;
     mu_settings_free(&settings);
@@ -216,6 +270,8 @@ _Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, con
 
 void mu_material_free(mu_material *material) {
     if (material->compiled) material->type->release(material->compiled);
+    if (material->blend) material->blend->compiled[0] = NULL;
+    mu_blend_free(material->blend, material->type);
     mu_varying_free(material->varying);
     mu_jacobian_free(&material->jacobian);
     *material = (mu_material){0};

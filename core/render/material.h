@@ -29,6 +29,7 @@ const char *mu_plugins_opened(const mu_plugins *plugins, size_t index);
 enum { MU_SLOT_TRANSFORM = 0, MU_SLOT_FOOTPRINT = 4, MU_SLOT_VALUES = 10, MU_SLOTS = 26 };
 
 struct mu_varying;
+struct mu_blend;
 
 typedef struct mu_material {
     const musurf_material_type *type;
@@ -36,6 +37,7 @@ typedef struct mu_material {
     musurf_plan plan;
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
     struct mu_varying *varying; /* parameters with sources; NULL: none */
+    struct mu_blend *blend;     /* a parameter between whose values materials are blended; `compiled` is its first */
     uint64_t digest;      /* of grids and pictures among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the others go: M = J T transform */
     _Bool tension;        /* T transform is pushed through slots[0..3] at each hit: T of the mesh's deformation */

@@ -249,7 +249,9 @@ static _Bool read_choice_object(mu_settings *s, const musurf_param *p, const mu_
 /* The floats of a new source: after those that the renderer knows by name. */
 static _Bool place_source(const mu_settings *s, mu_source *source, const mu_place *place, mu_error *error) {
     source->slot = MU_SLOT_VALUES;
-    for (size_t i = 0; i < s->source_count; i++) source->slot += (uint32_t)s->sources[i].count;
+    for (size_t i = 0; i < s->source_count; i++)
+        if (s->sources[i].slot + (uint32_t)s->sources[i].count > source->slot)
+            source->slot = s->sources[i].slot + (uint32_t)s->sources[i].count;
     return source->slot + (uint32_t)source->count <= MU_SLOTS ||
            mu_place_fail(place, error, "is more than varies at once: %d numbers may",
                          MU_SLOTS - MU_SLOT_VALUES);
@@ -265,6 +267,15 @@ static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *
         mu_source_free(source);
         return 1;
     }
+    if (!mu_source_serves(p)) {
+        if (s->blended.param) {
+            mu_source_free(source);
+            return mu_place_fail(place, error, "cannot vary too: of what the plugin wants constant %s varies already",
+                                 s->blended.param->name);
+        }
+        s->blended = *source;
+        return 1;
+    }
     if (!place_source(s, source, place, error)) {
         mu_source_free(source);
         return 0;
@@ -273,6 +284,18 @@ static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *
     setting->source = MUSURF_SLOT;
     setting->slot = source->slot;
     setting->values = NULL;
+    return 1;
+}
+
+_Bool mu_settings_blend(mu_settings *s, uint32_t param) {
+    size_t i = 0;
+    while (i < s->source_count && s->sources[i].param->id != param) i++;
+    if (i == s->source_count || s->blended.param || !mu_source_blends(s->sources[i].param)) return 0;
+    s->blended = s->sources[i];
+    memmove(s->sources + i, s->sources + i + 1, (--s->source_count - i) * sizeof *s->sources);
+    musurf_setting *setting = mu_settings_find(s, s->blended.param);
+    setting->source = MUSURF_CONSTANT;
+    setting->values = s->values[setting - s->items];
     return 1;
 }
 
@@ -322,6 +345,7 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
 void mu_settings_free(mu_settings *settings) {
     for (size_t i = 0; settings->grids && i < settings->count; i++) free(settings->grids[i]);
     for (size_t i = 0; i < settings->source_count; i++) mu_source_free(settings->sources + i);
+    mu_source_free(&settings->blended);
     free(settings->sources);
     free(settings->grids);
     free(settings->items);

@@ -15,6 +15,7 @@ typedef struct mu_settings {
     size_t count;
     mu_source *sources; /* of the settings in slots, in the order of these */
     size_t source_count;
+    mu_source blended; /* of a parameter that the plugin wants constant (blend.h); its param is NULL: there is none */
 } mu_settings;
 
 /* Whether a number is in the parameter's range, and that in words. */
@@ -33,6 +34,10 @@ const musurf_param *mu_type_find_id(const musurf_material_type *type, uint32_t i
 musurf_setting *mu_settings_find(const mu_settings *settings, const musurf_param *param);
 /* Adds a setting with zeros for values; there must be none of this parameter yet. */
 musurf_setting *mu_settings_add(mu_settings *settings, const musurf_param *param);
+
+/* The source of a parameter that the plugin refuses in a slot becomes the blended one; false: it has none, or there is another
+ * already. Its setting is a constant then, of values to be filled in. */
+_Bool mu_settings_blend(mu_settings *settings, uint32_t param);
 
 /* Fails at the place of parameter `name` in the object at `place`, or at the object if it is not given there.
  */

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/render/blend.h"
 #include "core/render/varying.h"
 
 _Bool mu_query_cache_make(mu_query_cache *cache, mu_error *error) {
@@ -27,11 +28,10 @@ void mu_query_cache_free(mu_query_cache *cache) {
 }
 
 static _Bool find_probe(const mu_material *material, const mu_place *place, mu_probed *out, mu_error *error) {
-    if (material->varying) {
-        const mu_place member = mu_place_member(place, material->varying->sources[0].param->name);
-        return mu_place_fail_key(&member, error,
-                                 "makes the material vary over the surface; here one point is looked at, so write "
-                                 "its value");
+    if (material->varying || material->blend) {
+        const mu_source *source = material->blend ? &material->blend->source : material->varying->sources;
+        return mu_settings_fail(place, source->param->name, error,
+                                "makes the material vary over the surface; here one point is looked at, so write its value");
     }
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
         const mu_place jacobian = mu_place_member(place, "jacobian");

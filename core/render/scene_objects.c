@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "core/render/scene_read.h"
+#include "core/render/blend.h"
 #include "core/render/varying.h"
 
 /* Which shape the object is, from "shape" or "mesh"; checks its keys. */
@@ -43,6 +44,8 @@ static _Bool check_uvs(mu_reader *reader, const mu_place *place, const mu_object
     if (maps && !what) what = "its \"jacobian\"";
     for (size_t i = 0; varying && i < varying->count && !what; i++)
         if (varying->sources[i].kind != MU_SOURCE_ATTRIBUTE) what = varying->sources[i].param->name;
+    if (scene->materials[material].material.blend && !what)
+        what = scene->materials[material].material.blend->source.param->name;
     if (object->shape != MU_MESH || scene->meshes[object->mesh].uvs || !what) return 1;
     return mu_place_fail(place, reader->error,
                          "%s needs texture coordinates, which the mesh \"%.60s\" has not",

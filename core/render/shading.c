@@ -3,6 +3,7 @@
 /* shading.c: the frame, the map M and the closure at a hit. World space in, local frame out (see shading.h).
  */
 #include "core/render/shading.h"
+#include "core/render/blend.h"
 #include "core/render/varying.h"
 
 enum { TRANSMISSION = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION | MUSURF_DIFFUSE_TRANSMISSION };
@@ -30,16 +31,22 @@ static void attributes_at(const mu_scene *scene, const mu_hit *hit, float *out) 
     }
 }
 
+/* What a sample sees at once: its share of the beam. */
+static void footprint_of(const mu_hit *hit, mu_vec3 wo, const mu_beam *beam, float out[6]) {
+    out[0] = hit->uv[0], out[1] = hit->uv[1];
+    for (int i = 2; i < 6; i++) out[i] = INFINITY;
+    if (!beam) return;
+    mu_footprint_at(hit, mu_scale(wo, -1), beam, out);
+    for (int i = 2; i < 6; i++) out[i] *= beam->share; /* the pixel's other samples see the rest */
+}
+
 /* Parameters that have sources, into slots; true: they come down to an M, which is put into those of "transform". */
 static _Bool values(const mu_scene *scene, const mu_material *material, const mu_hit *hit, mu_vec3 wo,
                     const mu_beam *beam, float *slots) {
     const float share = beam ? beam->share : 1;
-    float footprint[6] = {hit->uv[0], hit->uv[1], INFINITY, INFINITY, INFINITY, INFINITY};
+    float footprint[6];
     float attributes[MU_ATTRIBUTES] = {0};
-    if (beam && material->varying->pictured) {
-        mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
-        for (int i = 2; i < 6; i++) footprint[i] *= share; /* the pixel's other samples see the rest */
-    }
+    footprint_of(hit, wo, material->varying->pictured ? beam : NULL, footprint);
     if (material->varying->pointwise) attributes_at(scene, hit, attributes);
     mu_varying_at(material->varying, material->compiled, footprint, share * share, attributes, slots, slots + MU_SLOT_TRANSFORM);
     return material->varying->map != NULL;
@@ -123,6 +130,12 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
     }
     const float direction[3] = {local.x, local.y, local.z};
     const musurf_map *map = material->varying ? material->varying->map : NULL;
-    shading->lobes = map ? map->setup(material->compiled, direction, m, slots, 0, closure)
-                         : material->type->setup(material->compiled, direction, slots, 0, closure);
+    const musurf_material *compiled = material->compiled;
+    if (material->blend) {
+        float footprint[6];
+        footprint_of(hit, wo, beam, footprint);
+        compiled = mu_blend_at(material->blend, footprint);
+    }
+    shading->lobes = map ? map->setup(compiled, direction, m, slots, 0, closure)
+                         : material->type->setup(compiled, direction, slots, 0, closure);
 }

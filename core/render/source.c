@@ -20,6 +20,10 @@ _Bool mu_source_serves(const musurf_param *param) {
                                                 param->kind == MUSURF_MATRIX || param->kind == MUSURF_VECTOR);
 }
 
+_Bool mu_source_blends(const musurf_param *param) {
+    return param->kind == MUSURF_NUMBER;
+}
+
 _Bool mu_source_is(const json_t *value) {
     return json_object_get(value, "texture") || json_object_get(value, "direction_map") ||
            json_object_get(value, "attribute") || json_object_get(value, "expression");
@@ -111,7 +115,7 @@ _Bool mu_source_read(mu_source *source, const musurf_param *param, const mu_plac
                                                                                              NULL};
     *source = (mu_source){.param = param, .count = (int)mu_kind_numbers(param->kind)};
     if (!mu_place_only(place, any, error)) return 0;
-    if (!mu_source_serves(param))
+    if (!mu_source_serves(param) && !mu_source_blends(param))
         return mu_place_fail(place, error, "%s cannot vary over the surface: a constant is needed",
                              param->name);
     _Bool good;

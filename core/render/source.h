@@ -43,8 +43,9 @@ typedef struct mu_source {
     mu_expression *formula;                          /* MU_SOURCE_EXPRESSION: `count` */
 } mu_source;
 
-/* Can the parameter have a source? */
+/* Can the parameter have a source: does the plugin take it at each hit, or may it be blended (blend.h)? */
 _Bool mu_source_serves(const musurf_param *param);
+_Bool mu_source_blends(const musurf_param *param);
 /* Is this an object that names a source? */
 _Bool mu_source_is(const json_t *value);
 _Bool mu_source_read(mu_source *source, const musurf_param *param, const mu_place *place, mu_error *error);

@@ -22,6 +22,9 @@ typedef struct mu_ibl_image {
 /* `to` becomes what `from` holds, averaged by solid angle over each of its pixels. The sizes need not divide each other. */
 void mu_ibl_average(const mu_ibl_image *from, mu_ibl_image *to);
 
+/* `to` becomes what a cube map of six faces one below the other, each at least 2 pixels wide, holds (cube.c). */
+void mu_ibl_from_cube(const mu_ibl_image *cube, mu_ibl_image *to);
+
 /* Images of a size halved and rounded down until it is 1 x 1, as mip maps have it, each the average of the one before. */
 typedef struct mu_ibl_pyramid {
     size_t levels;

@@ -21,7 +21,7 @@ static const mu_option options[] = {
 
 static const mu_usage usage = {
     "ibl prefilter", "ENV -o OUT.exr [OPTIONS]",
-    "Blurs a latitude-longitude environment (any image that OpenImageIO reads; +z up, middle column towards "
+    "Blurs a latitude-longitude environment or a cube map (any image that OpenImageIO reads; +z up, middle column towards "
     "+x) by GGX\n"
     "lobes of rising roughness, by filtered importance sampling, into a mip-mapped, tiled OpenEXR file.\n",
     options,
@@ -30,6 +30,7 @@ static const mu_usage usage = {
     "own mirrored view, cosine included. n is the attribute musurfLevels, the levels down to 8 rows or so; "
     "those beyond\n"
     "are as rough as the last. Level 0 is the environment itself, averaged to its size.\n"
+    "An image six times as high as wide is a cube map, its faces in OpenEXR's order and directions.\n"
     "A file that is there already and was made of the same bytes with the same settings is left as it is.\n"};
 
 /* On a terminal alone, where any thread may write the one short line. */

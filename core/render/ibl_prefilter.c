@@ -127,6 +127,17 @@ static _Bool run(const mu_prefilter *job, head *h, const mu_ibl_image *image, mu
     return good;
 }
 
+/* A cube map becomes a latitude-longitude image whose pixels are half as large as those in the middle of a face. */
+static _Bool unfold(mu_ibl_image *image, mu_error *error) {
+    const size_t side = image->width;
+    mu_ibl_image flat = {6 * side, 3 * side, malloc(3 * 6 * side * 3 * side * sizeof(float))};
+    if (!flat.rgb) return mu_fail(error, "not enough memory for a cube map");
+    mu_ibl_from_cube(image, &flat);
+    free(image->rgb);
+    *image = flat;
+    return 1;
+}
+
 _Bool mu_prefilter_run(const mu_prefilter *job, _Bool *kept, mu_error *error) {
     head h = {.job = job};
     const uint64_t bytes = mu_digest_file(mu_digest_text(0, MUSURF_VERSION), job->image);
@@ -135,16 +146,17 @@ _Bool mu_prefilter_run(const mu_prefilter *job, _Bool *kept, mu_error *error) {
     *kept = mu_exr_has_text(job->output, "musurfKey", h.key);
     if (*kept) return 1;
     int width, height;
-    float *pixels = mu_image_read(job->image, &width, &height, error);
+    float *const pixels = mu_image_read(job->image, &width, &height, error);
     if (!pixels) return 0;
-    const mu_ibl_image image = {(size_t)width, (size_t)height, pixels};
+    mu_ibl_image image = {(size_t)width, (size_t)height, pixels};
     const size_t changed = clean(&image);
     if (changed)
         mu_warn(error, "%s: %zu numbers were negative, not finite or above %g; clamped", job->image, changed,
                 (double)BRIGHTEST);
-    const _Bool good = height < LEAST_ROWS ? mu_fail(error, "%s: %d rows are too few; %d are needed",
-                                                     job->image, height, LEAST_ROWS)
-                                           : run(job, &h, &image, error);
-    free(pixels);
+    _Bool good = height >= LEAST_ROWS ||
+                 mu_fail(error, "%s: %d rows are too few; %d are needed", job->image, height, LEAST_ROWS);
+    if (good && height == 6 * width) good = unfold(&image, error);
+    good = good && run(job, &h, &image, error);
+    free(image.rgb);
     return good;
 }

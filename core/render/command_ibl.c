@@ -12,18 +12,20 @@
 
 static const mu_option no_options[] = {{NULL, NULL, NULL}};
 static const mu_usage usage = {
-    "ibl", "axis|plot|prefilter ...",
+    "ibl", "albedo|axis|plot|prefilter ...",
     "Image-based lighting: where a glossy, anisotropic material looks into its "
     "environment, by the major axis of its\n"
     "lobe (Cocco, Zanni, Chermain 2024).\n",
     no_options,
+    "  albedo      what a material reflects of even light, by view; see musurf ibl albedo --help\n"
     "  axis        closest and farthest points, the axis above the horizon, "
     "samples; see musurf ibl axis --help\n"
     "  plot        these as a picture; see musurf ibl plot --help\n"
     "  prefilter   an environment blurred for every roughness; see musurf ibl prefilter --help\n"};
 
 int mu_command_ibl(int argc, char **argv) {
-    static const mu_subcommand list[] = {{"axis", mu_command_ibl_axis},
+    static const mu_subcommand list[] = {{"albedo", mu_command_ibl_albedo},
+                                         {"axis", mu_command_ibl_axis},
                                          {"plot", mu_command_ibl_plot},
                                          {"prefilter", mu_command_ibl_prefilter},
                                          {NULL, NULL}};

@@ -7,6 +7,7 @@
 #include "core/ibl/ibl.h"
 #include "core/render/document.h"
 
+int mu_command_ibl_albedo(int argc, char **argv);
 int mu_command_ibl_axis(int argc, char **argv);
 int mu_command_ibl_plot(int argc, char **argv);
 int mu_command_ibl_prefilter(int argc, char **argv);

@@ -21,7 +21,8 @@ static const mu_option options[] = {
 
 static const mu_usage usage = {
     "ibl prefilter", "ENV -o OUT.exr [OPTIONS]",
-    "Blurs a latitude-longitude environment or a cube map (any image that OpenImageIO reads; +z up, middle column towards "
+    "Blurs a latitude-longitude environment or a cube map (any image that OpenImageIO reads; +z up, middle "
+    "column towards "
     "+x) by GGX\n"
     "lobes of rising roughness, by filtered importance sampling, into a mip-mapped, tiled OpenEXR file.\n",
     options,

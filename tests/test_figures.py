@@ -125,6 +125,7 @@ class Pictures(unittest.TestCase):
                     image.load()
                     self.assertGreaterEqual(image.width, 64)
             told = json.loads((folder / "figures.json").read_text())
+            self.assertEqual((folder / "fragment.html").read_text().count("<img "), 4)
             plain, tense = (exr.read(folder / f"birds{end}.exr")[1]["G"] for end in ("", "-tension"))
             self.assertEqual(len(list((folder / "balloon").glob("*.exr"))), 3)
             self.assertEqual(len(list((folder / "vase").glob("*.exr"))), 6)

@@ -16,6 +16,7 @@ from command import BUILD, ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from geometry import deformed, deformed_run, errors, highlight  # noqa: E402
+from reporting import claims  # noqa: E402
 
 M = np.array(((1.2, 0.5), (-0.3, 0.9)))
 
@@ -96,12 +97,21 @@ class Plate(unittest.TestCase):
                                   capture_output=True, text=True, env=dict(os.environ, BUILD=str(BUILD)))
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             told = json.loads((pathlib.Path(folder) / "deformed.json").read_text())
+            text = (pathlib.Path(folder) / "fragment.html").read_text()
+        self.assertEqual((text.count("data:image/png"), text.count("<td>moment xy</td>")), (1, 1))
+        self.assertIn("the material as at rest fails, as it must", claims.deformed({"deformed": told})[0])
         plate, = told["plates"]
         self.assertEqual([row["measure"] for row in plate["rows"]], ["light", "peak", "place x", "place y", "moment xx", "moment yy", "moment xy"])
         for row in plate["rows"]:
             self.assertLess(abs(row["deviation"]), plate["tolerance"] + 6 * row["error"], row)  # t of 3 degrees of freedom at 1 % is 5.8
             self.assertLess(row["error"], 0.05, row)
         self.assertIn("FAILS", [row["verdict"] for row in plate["as_at_rest"]])
+        self.assertNotEqual(claims.deformed({"deformed": told})[1], "FAILS")
+        right = plate["as_at_rest"]
+        plate["as_at_rest"] = [dict(row, verdict="agrees") for row in right]
+        self.assertEqual(claims.deformed({"deformed": told})[1], "FAILS")
+        plate["as_at_rest"], plate["rows"][3]["verdict"] = right, "FAILS"
+        self.assertEqual(claims.deformed({"deformed": told})[1], "FAILS")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import numpy as np
 
 from modelling import balloon, creatures, make
 
-from . import pictures, triangle
+from . import page, pictures, triangle
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "figures"
 ANIMALS = [("birds", "bird", 0.25, 2.2), ("dogs", "dog", 0.16, 1.4)]
@@ -127,8 +127,8 @@ FIGURES = ("figure6", "figure7", "figure8", "balloon")
 
 def main(arguments, build):
     parser = argparse.ArgumentParser("scripts/figures", description="Makes the meshes of scenes/figures and renders Figures 6, 7 and 8 of Microsurface Transformations and "
-                                     "a balloon of 24 frames: figure6.png, figure7.png, figure8.png, balloon.png (all frames), balloon.gif, every image as EXR, and "
-                                     "figures.json. Exit 0; 1 if something failed; 2 on wrong usage; 130 if interrupted.")
+                                     "a balloon of 24 frames: figure6.png, figure7.png, figure8.png, balloon.png (all frames), balloon.gif, every image as EXR, "
+                                     "figures.json, and fragment.html for scripts/report. Exit 0; 1 if something failed; 2 on wrong usage; 130 if interrupted.")
     parser.add_argument("--quick", action="store_true", help="small and noisy, 3 frames: to see that it works")
     parser.add_argument("--only", action="append", choices=FIGURES, help="only this one; may be repeated")
     parser.add_argument("--spp", type=int, metavar="N", help="samples per pixel instead of the scenes' own")
@@ -146,9 +146,9 @@ def main(arguments, build):
             print(f"figures: [{number}/{len(chosen)}] {name}; {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
             getattr(maker, name)()
         told = {"command": " ".join(["scripts/figures", *arguments]), **maker.told, "seconds": round(time.monotonic() - start, 1)}
-        fresh = maker.folder / "figures.json.new"
-        fresh.write_text(json.dumps(told, indent=1))
-        fresh.replace(maker.folder / "figures.json")
+        for name, text in (("figures.json", json.dumps(told, indent=1)), ("fragment.html", page.fragment(told, maker.folder, chosen))):
+            (maker.folder / f"{name}.new").write_text(text, encoding="utf-8")
+            (maker.folder / f"{name}.new").replace(maker.folder / name)
     except (OSError, KeyError, ValueError, FigureError) as error:
         print(f"figures: {error}", file=sys.stderr)
         return 1

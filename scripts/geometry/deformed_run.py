@@ -12,7 +12,7 @@ import numpy as np
 
 from crosscheck import povray
 
-from . import charts, deformed, errors, highlight, render
+from . import charts, deformed, deformed_tables, errors, highlight, render
 from .run import SEED, Progress, count, write
 
 TURN = np.radians(35)
@@ -81,24 +81,15 @@ def run(options, build):
               "pixels": [eye.width, eye.height], "rays_per_pixel": options.fine ** 2, "samples": 2 * options.samples, "level": highlight.LEVEL,
               "plates": found, "picture": picture, "seconds": round(time.monotonic() - start, 1)}
     write(folder / "deformed.json", json.dumps(result, indent=1))
+    write(folder / "fragment.html", deformed_tables.fragment(result, folder))
     return result
-
-
-def summary(result):
-    yield "highlights of facets against the material under tension: deviation in units of which the tolerance is a share, +- standard error"
-    for plate in result["plates"]:
-        sizes = "; ".join(f"{name} {a:.4f} x {b:.4f} at {c:.1f} deg" for name, (a, b, c) in plate["ellipses"].items())
-        yield f"  {plate['name']}, tolerance {plate['tolerance']:.0%}; FLIP {plate['flip']:.3f} (noise {plate['flip_of_noise']:.3f}); {sizes}"
-        for row, wrong in zip(plate["rows"], plate["as_at_rest"]):
-            yield (f"    {row['measure']:10} {row['deviation']:+7.2%} +- {row['error']:.2%}  {row['verdict']:9}   "
-                   f"material as at rest: {wrong['deviation']:+8.2%}  {wrong['verdict']}")
 
 
 def main(arguments, build):
     parser = argparse.ArgumentParser("scripts/geometry-tension", formatter_class=argparse.ArgumentDefaultsHelpFormatter, description="A plate with an explicit "
                                      "heightfield of mirror facets, deformed as a whole, in POV-Ray beside the deformed plate's mesh with \"tension\" in musurf: the highlight "
                                      "of a small lamp, its light, peak, place and second moments, with standard errors and verdicts; and, to see that the comparison can tell, "
-                                     "the same with a material that stays as it was. Leaves scenes, deformed.json and deformed.png. Exit 0: nothing fails and the wrong material "
+                                     "the same with a material that stays as it was. Leaves scenes, deformed.json, deformed.png and fragment.html for scripts/report. Exit 0: nothing fails and the wrong material "
                                      "does; 1: otherwise, or a step failed; 2: wrong usage.")
     parser.add_argument("--quick", action="store_true", help="small and few: to see that it works")
     parser.add_argument("--ndf", default="beckmann", help="law of the surface's slopes")
@@ -124,7 +115,7 @@ def main(arguments, build):
         return 1
     except KeyboardInterrupt:
         return 130
-    for line in summary(result):
+    for line in deformed_tables.summary(result):
         print(line)
     print(pathlib.Path(options.output) / "deformed.json")
     good = all(row["verdict"] != highlight.FAILS for plate in result["plates"] for row in plate["rows"])

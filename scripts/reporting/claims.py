@@ -75,6 +75,16 @@ def geometry(data):
     return f"largest deviation of the plate’s mean {row['deviation']:+.2%} ± {row['error']:.2%} ({name}), FLIP {row['flip']:.3f} (noise {row['flip_of_noise']:.3f})", MEASURED
 
 
+def deformed(data):
+    rows = [(abs(row["deviation"]), plate["name"], row) for plate in data["deformed"]["plates"] for row in plate["rows"]]
+    _, name, row = max(rows, key=lambda r: r[0])
+    verdicts = [row["verdict"] for _, _, row in rows]
+    told = all(any(row["verdict"] == FAILS for row in plate["as_at_rest"]) for plate in data["deformed"]["plates"])
+    number = (f"largest deviation {row['deviation']:+.2%} ± {row['error']:.2%} ({name}, {row['measure']}); {verdicts.count(AGREES)} of {len(verdicts)} agree, "
+              f"{verdicts.count(FAILS)} fail; the material as at rest {'fails' if told else 'does not fail'}, as it must")
+    return number, FAILS if FAILS in verdicts or not told else AGREES if set(verdicts) == {AGREES} else MEASURED
+
+
 def slopes(data):
     worst = max(data["gallery"]["surfaces"], key=lambda s: s["total_variation"])
     return f"total variation at most {worst['total_variation']:.4f} ({worst['name']})", MEASURED
@@ -113,6 +123,7 @@ CLAIMS = [
     ("Three independent tracers see the same facets.", "Bits of the exact tracer against Embree’s and POV-Ray’s", "costs", tracers),
     ("What accuracy costs on explicit surfaces is known beforehand.", "Power laws over grid, points, realisations; predictions tried with fresh seeds", "costs", costs),
     ("A material fitted to a surface looks as the surface does.", "Plates of facets by POV-Ray beside the fitted material, several M", "geometry", geometry),
+    ("A microsurface deforms with its object (Section 5.1).", "Highlights of deformed plates of facets by POV-Ray beside meshes under tension", "deformed", deformed),
     ("Masking of GTR is exact for every γ, not only for integers.", "G1 against the rule at half the step", "curves", masking),
     ("The paper’s approximate masking of GTR is not exact between integers.", "Figure 9: G1 by the spline of Appendix A against exact masking", "efficiency", spline),
     ("Sampling visible normals needs fewer samples than the paper’s mixed sampling.", "Noise on the torus knot of Figure 10 against a long reference", "efficiency", samplers),

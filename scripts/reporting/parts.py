@@ -20,6 +20,8 @@ PARTS = {"gallery": (["scripts/gallery"], ["--quick"], [], "gallery/gallery.json
          "costs": (["scripts/costs"], ["--quick"], [], "costs/costs.json"),
          "efficiency": (["scripts/efficiency"], ["--quick"], [], "efficiency/efficiency.json"),
          "geometry": (["scripts/geometry-pair"], ["--quick"], [], "geometry/geometry.json"),
+         "deformed": (["scripts/geometry-tension"], ["--quick"], [], "geometry-tension/deformed.json"),
+         "figures": (["scripts/figures"], ["--quick"], [], "figures/figures.json"),
          "validate": (["scripts/validate"], ["--quick"], ["--full"], "validate/validate.json")}
 
 

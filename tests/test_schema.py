@@ -101,6 +101,8 @@ class Schema(unittest.TestCase):
         for o in objects:  # its tables take seconds each: test_bsdf_varying.c judges them, and dozens of them are no better
             if isinstance(o, dict) and o.get("multiple_scattering") == "compensated":
                 o.pop("jacobian", None)
+                for name in [n for n, value in o.items() if isinstance(value, dict) and "attribute" in value]:
+                    o.pop(name)
         out = answers(musurf("eval", stdin=[{"material": o, "wo": [0, 0, 1]} for o in objects]))
         judged = {True: 0, False: 0}
         for o, answer in zip(objects, out, strict=True):

@@ -37,11 +37,11 @@ class Pictures(unittest.TestCase):
         exr.write(self.folder / name, {c: np.asarray(p, np.float32) for c, p in planes.items()})
         return {"texture": name}
 
-    def scene(self, material, samples=4, size=(40, 30), **item):
+    def scene(self, material, samples=4, size=(40, 30), file="m.ply", **item):
         item = item or {"shape": "rectangle", "size": [2, 2]}
         scene = {"camera": {"position": [0.5, -2.5, 2], "target": [0, 0, 0], "fov": 40},
                  "film": {"width": size[0], "height": size[1], "pixels": "float"}, "integrator": {"samples": samples, "depth": 2},
-                 "meshes": {"m": {"file": "m.ply"}} if "mesh" in item else {},
+                 "meshes": {"m": {"file": file}} if "mesh" in item else {},
                  "objects": [dict(item, material=material)],
                  "lights": [{"type": "studio"}, {"type": "rectangle", "transform": [{"rotate": [1, 0, 0, 180]}, {"translate": [1, 2, 3]}]}]}
         (self.folder / "scene.json").write_text(json.dumps(scene))

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import mitsuba_host
 
@@ -86,6 +87,8 @@ class Messages(unittest.TestCase):
                            ('{"material": "musurf.microfacet", "alpha": [1, 2]}', "$.alpha: takes 1 number"),
                            ('{"material": "musurf.microfacet", "fresnel": {"schlik": 1}}', "$.fresnel.schlik: musurf.microfacet has no"),
                            ('{"material": "musurf.microfacet", "jacobian": {}}', "$.jacobian: is for musurf's own renderer"),
+                           ('{"material": "musurf.microfacet", "alpha": {"texture": "a.png"}}', "as \"alpha\" beside \"file\""),
+                           ('{"material": "musurf.microfacet", "transform": {"attribute": "m"}}', "as \"transform_0\", \"transform_1\","),
                            ('{"material": "musurf.microfacet", "ndf": "tabulated", "histogram": {"heightfield": "h.exr"}}',
                             "$.histogram: this host reads grids with their weights")):
             broken.write_text(text)
@@ -154,6 +157,11 @@ class Messages(unittest.TestCase):
         self.assertIn("Render inside `with musurf_mitsuba.evaluated():`", "".join(HEARD))
         with musurf_mitsuba.evaluated():  # and Mitsuba lives
             self.assertTrue(np.isfinite(np.array(mi.render(scene, spp=1))).all())
+
+    def test_an_llvm_that_would_end_the_process(self):
+        with unittest.mock.patch.object(musurf_mitsuba.dr.detail, "llvm_version", lambda: (14, 0, 6)):
+            self.says("Dr.Jit uses LLVM 14, which cannot compile", lambda: mi.load_dict({"type": "musurf"}))
+        self.assertIn("musurf.microfacet", str(mi.load_dict({"type": "musurf"})))
 
     def test_other_variants(self):
         for variant in ("scalar_rgb", "llvm_ad_spectral", "llvm_ad_mono"):

@@ -67,6 +67,10 @@ def grid(value, where):
 def plain(p, value, where):
     if p.kind == abi.GRID:
         return grid(value, where)
+    if isinstance(value, dict) and p.may_vary:
+        keys = ", ".join(f"\"{key}\"" for key in p.keys()) or f"\"{p.key}\""
+        raise FileError(f"{where}: pictures and formulas in a file are for musurf's own renderer; this host takes its own textures, as {keys} beside "
+                        "\"file\"")
     if p.kind == abi.CHOICE:
         if not isinstance(value, str):
             raise FileError(f"{where}: takes a word: {', '.join(p.choices)}")

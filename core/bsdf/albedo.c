@@ -2,19 +2,19 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * albedo.c: makes the tables of albedo.h, from the very surface that they complete, as fine as the definition asks: a
- * patch is halved along an axis until the values midway between its nodes differ from what its nodes say by no more than
- * half of what E may be off, either axis adding its part. A kink halves with the cells, all else quarters; what is midway
- * between nodes is computed to be compared, so that every cell of the finished patch was tested; of tables that stand between
- * others (of blurring, of a grid) that a kink halves is trusted, which saves half of the work. Where halving has to end before
- * (ALBEDO_HALVINGS, or memory), `unsure` says by how much.
+ * patch is halved along an axis until what lies between its nodes (look_between) differs from what its nodes say by no more than
+ * half of what E may be off, either axis adding its part. A kink halves with the cells, all else quarters; what is between
+ * nodes is computed to be compared, so that every cell of the finished patch was tested; of tables that stand between
+ * others (of blurring, of a grid) that a kink halves is trusted, which saves half of the work. Nothing is computed twice. Where
+ * halving has to end before (ALBEDO_HALVINGS, or memory), `unsure` says by how much.
  */
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
 
 #if MU_REAL_BITS == 24
 
-/* Walks that tell where light leaves; nodes along a side of a patch at most. */
-enum { WALKS = 2048, SIDE = (1 << ALBEDO_HALVINGS) + 1 };
+/* Walks that tell where light leaves; nodes along a side of a patch at most, what is midway between them included. */
+enum { WALKS = 2048, FINEST = ALBEDO_HALVINGS + 1, SIDE = (1 << FINEST) + 1 };
 static const float smallest = 1e-12f; /* singular value of L, lest it leave float's range */
 static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
@@ -25,9 +25,10 @@ typedef struct patch_maker {
     double core;
     float turn; /* +1; -1 from below */
     int quadrant, column, row;
-    int log[2];              /* along u, S */
-    float value[SIDE][SIDE]; /* [u][S] */
-    float midway[SIDE][SIDE];
+    int log[2];                    /* along u, S */
+    int parted;                    /* light is transmitted, too */
+    float seen[SIDE][SIDE];        /* [u][S]: what was evaluated already, else NaN */
+    float edge[ALBEDO_ROWS][SIDE]; /* of the patches of the column before, where they meet those of this */
 } patch_maker;
 
 static int bind_source(const albedo_source *s, const float w[3], closure *c) {
@@ -56,29 +57,57 @@ static float evaluate(const patch_maker *m, double u, double s) {
     return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed), least);
 }
 
-/* The values midway along an axis, and the most that they are off the mean of their neighbours. */
-static float look_midway(patch_maker *m, int axis) {
-    const int u_cells = 1 << m->log[0], s_cells = 1 << m->log[1];
-    float worst = 0;
-    for (int j = 0; j < u_cells + (axis == 1); j++)
-        for (int i = 0; i < s_cells + (axis == 0); i++) {
-            const float mean = (m->value[j][i] + (axis ? m->value[j][i + 1] : m->value[j + 1][i])) / 2;
-            m->midway[j][i] = evaluate(m, (j + (axis ? 0 : 0.5)) / u_cells, (i + (axis ? 0.5 : 0)) / s_cells);
-            worst = fmaxf(worst, fabsf(m->midway[j][i] - mean));
-        }
-    return worst;
+/* The value at j, i of 2^log each; each is evaluated once. */
+static float at(patch_maker *m, int j, int log_u, int i, int log_s) {
+    const double u = (double)j / (1 << log_u), s = (double)i / (1 << log_s);
+    if (log_u > FINEST || log_s > FINEST) return evaluate(m, u, s);
+    float *known = &m->seen[m->table->columns == 1 ? 0 : j << (FINEST - log_u)][i << (FINEST - log_s)];
+    if (isnan(*known)) *known = evaluate(m, u, s);
+    return *known;
 }
 
-static void halve(patch_maker *m, int axis) {
-    const int u_cells = 1 << m->log[0], s_cells = 1 << m->log[1];
-    for (int j = u_cells; j >= 0; j--)
-        for (int i = s_cells; i >= 0; i--) {
-            const int to_j = axis ? j : 2 * j, to_i = axis ? 2 * i : i;
-            m->value[to_j][to_i] = m->value[j][i];
-            if (axis && i < s_cells) m->value[to_j][to_i + 1] = m->midway[j][i];
-            if (!axis && j < u_cells) m->value[to_j + 1][to_i] = m->midway[j][i];
+/* Where the patch's line at u meets the angle at which total reflection begins: S from 0 to 1, or below 0 if nowhere. */
+static float critical(const patch_maker *m, double u) {
+    const double index = m->source->definition->dielectric, eta = m->turn < 0 ? 1 / index : index;
+    float w[3];
+    if (!m->parted || !(eta < 1)) return -1;
+    mu_albedo_direction(m->table, &m->table->frame, m->quadrant, (float)((m->column + u) / m->table->columns),
+                        0.5f, w);
+    const float flat = hypotf(w[0], w[1]), sine = (float)eta;
+    const float at_it[3] = {w[0] / flat * sine, w[1] / flat * sine, sqrtf(1 - sine * sine)};
+    const albedo_place place = albedo_locate(m->table, &m->table->frame, at_it);
+    return place.patch % ALBEDO_ROWS == m->row ? place.s : -1;
+}
+
+/* What a line between nodes is off at S, at u = j of 2^log. */
+static float off_at(patch_maker *m, int j, float s) {
+    const int log_u = m->log[0], log_s = m->log[1];
+    float within = s;
+    const int cell = albedo_cell(&within, log_s);
+    const float from = at(m, j, log_u, cell, log_s), to = at(m, j, log_u, cell + 1, log_s);
+    return fabsf(evaluate(m, (double)j / (1 << log_u), (double)s) - from - (to - from) * within);
+}
+
+/* The most that lines between nodes along an axis are off what is midway; or, of what transmits, at quarters, since inflections
+ * hide midway what is off on both sides of it, and where total reflection begins, however narrow that is. */
+static float look_between(patch_maker *m, int axis) {
+    const int cells = 1 << m->log[axis], lines = 1 << m->log[!axis], parts = m->parted ? 2 : 1;
+    float worst = 0;
+    for (int k = 0; k <= (m->table->columns == 1 ? 0 : lines); k++) {
+        const float kink = axis ? critical(m, (double)k / lines) : -1;
+        if (kink >= 0) worst = fmaxf(worst, off_at(m, k, kink));
+        for (int i = 0; i < cells << parts; i++) {
+            const int cell = i >> parts, step = i - (cell << parts);
+            if (!step) continue;
+            const int *const log = m->log;
+            const float here =
+                            axis ? at(m, k, log[0], i, log[1] + parts) : at(m, i, log[0] + parts, k, log[1]),
+                        from = axis ? at(m, k, log[0], cell, log[1]) : at(m, cell, log[0], k, log[1]),
+                        to = axis ? at(m, k, log[0], cell + 1, log[1]) : at(m, cell + 1, log[0], k, log[1]);
+            worst = fmaxf(worst, fabsf(here - from - (to - from) * (float)step / (float)(1 << parts)));
         }
-    m->log[axis]++;
+    }
+    return worst;
 }
 
 /* Halves until both axes are near enough; returns what is left. */
@@ -86,21 +115,18 @@ static float grow(patch_maker *m, size_t most) {
     const float wanted = (float)m->source->error / 2;
     const int isotropic = m->table->columns == 1;
     m->log[0] = isotropic ? 0 : 1, m->log[1] = 1;
-    for (int j = 0; j <= 1 << m->log[0]; j++)
-        for (int i = 0; i <= 2; i++)
-            m->value[j][i] = isotropic && j ? m->value[0][i] : evaluate(m, j / 2.0, i / 2.0);
     float left[2] = {0, 0};
     int done[2] = {isotropic, 0};
     for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
         if (done[axis]) continue;
-        left[axis] = look_midway(m, axis);
+        left[axis] = look_between(m, axis);
         done[axis] = 1;
         if (left[axis] <= wanted) continue;
         const size_t cells = (size_t)1 << (m->log[0] + m->log[1]);
         if (m->log[axis] >= m->source->halvings ||
             2 * (2 * cells + (1u << m->log[0]) + (2u << m->log[1])) > most)
             continue;
-        halve(m, axis);
+        m->log[axis]++;
         done[axis] = 0;
         if (!isotropic && left[axis] > 4 * wanted)
             done[!axis] = 0; /* new rows have to be seen along the other axis */
@@ -110,15 +136,30 @@ static float grow(patch_maker *m, size_t most) {
     return fmaxf(left[0], left[1]) > wanted ? left[0] + left[1] : 0;
 }
 
+/* Nothing is known of a patch but the edges where it meets those before. */
+static void start(patch_maker *m, int k) {
+    float below[SIDE];
+    const int row = k % ALBEDO_ROWS, column = k / ALBEDO_ROWS % m->table->columns;
+    if (column > 0 || row > 0)
+        for (int j = 0; j < SIDE; j++) below[j] = m->seen[j][SIDE - 1];
+    for (int i = 0; i < SIDE; i++) {
+        if (k > 0) m->edge[m->row][i] = m->seen[SIDE - 1][i];
+        for (int j = 0; j < SIDE; j++) m->seen[j][i] = NAN;
+    }
+    m->row = row, m->column = column, m->quadrant = k / ALBEDO_ROWS / m->table->columns;
+    for (int i = 0; column > 0 && i < SIDE; i++) m->seen[0][i] = m->edge[row][i];
+    for (int j = 0; row > 0 && j < SIDE; j++) m->seen[j][0] = below[j];
+}
+
 static size_t fill_side(const albedo_source *source, const mu_albedo *t, double core, float turn,
                         mu_albedo_side *out, float *values, size_t most) {
     patch_maker m = {.source = source, .table = t, .core = core, .turn = turn};
+    m.parted = source->surface->transmission;
     const int patches = t->quadrants * t->columns * ALBEDO_ROWS;
     size_t nodes = 0, cells = 0;
     out->unsure = 0;
     for (int k = 0; k < patches; k++) {
-        m.row = k % ALBEDO_ROWS, m.column = k / ALBEDO_ROWS % t->columns,
-        m.quadrant = k / ALBEDO_ROWS / t->columns;
+        start(&m, k);
         /* what is left, but for the least of those to come */
         const size_t used = nodes + cells, kept = (size_t)(patches - 1 - k) * 13;
         out->unsure = fmaxf(out->unsure, grow(&m, most > used + kept ? most - used - kept : 0));
@@ -126,7 +167,7 @@ static size_t fill_side(const albedo_source *source, const mu_albedo *t, double 
         out->patch[k] =
             (albedo_patch){(uint32_t)nodes, (uint32_t)cells, (uint8_t)m.log[0], (uint8_t)m.log[1]};
         for (int j = 0; j <= across; j++)
-            for (int i = 0; i <= up; i++) values[nodes++] = m.value[j][i];
+            for (int i = 0; i <= up; i++) values[nodes++] = at(&m, j, m.log[0], i, m.log[1]);
         cells += (size_t)(across * up);
     }
     out->lost = values, out->cells = (uint32_t)cells;

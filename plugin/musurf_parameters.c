@@ -162,4 +162,9 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      "Smith's masking of gtr: exact, or spline, the approximation of Appendix A for gamma up to 4, for "
      "comparison. The spline is sampled by mixed unless sampler says ndf.",
      CHOICE("exact", smith_choices)},
+    {HEAD(38, "blurs", "Is blurred"),
+     "The host blurs its closures (path regularisation): compensated makes tables for that, too, which takes "
+     "up to ten times as "
+     "long. Without them a blurred closure scatters singly, as if multiple_scattering were none.",
+     VALUES("", MUSURF_FLAG, 0, 0, 1, 0, 1, 0)},
 };

@@ -122,5 +122,6 @@ musurf_result musurf_parse(const musurf_host *host, const musurf_setting *settin
     d->transmission = musurf_number(&g, TRANSMISSION) != 0;
     d->multiple = (mu_scattering)musurf_choice(&g, MULTIPLE_SCATTERING);
     d->compensation_varies = d->multiple == MU_COMPENSATED && out->varying;
+    d->compensation_blurs = d->multiple == MU_COMPENSATED && musurf_number(&g, BLURS) != 0;
     return judge(&g, d);
 }

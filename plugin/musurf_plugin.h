@@ -249,7 +249,8 @@ typedef struct musurf_material_type {
     float (*pdf)(const void *closure, const float wi[3], uint32_t lobes);
     /* [any] An estimate in [0,1] of the directional albedo, for guiding and denoising; no guarantee. */
     void (*albedo)(const void *closure, float rgb[3]);
-    /* [any] Raises the closure's slope roughness to at least `alpha`: what path regularisation wants. */
+    /* [any] Raises the closure's slope roughness to at least `alpha`: what path regularisation wants. A material may ask to be
+     * told at compile that it will be (parameter "blurs" of musurf.microfacet), and be darker without. */
     void (*blur)(void *closure, float alpha);
 
     /* [any] Batches: element i of a stream lies i*stride bytes behind its base; stride 0 repeats one element.

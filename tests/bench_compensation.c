@@ -95,7 +95,7 @@ static mu_definition define(const struct family *f, const struct kind *k, const 
     memcpy(d.transform, k->map, sizeof d.transform);
     memcpy(d.tilt, k->tilt, sizeof d.tilt);
     if (k->glass) d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
-    d.compensation_varies = varies(k);
+    d.compensation_varies = varies(k), d.compensation_blurs = k->blurs;
     return d;
 }
 

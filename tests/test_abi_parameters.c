@@ -54,6 +54,7 @@ static const struct known {
     {35, MUSURF_FOOTPRINT, "footprint"},
     {36, MUSURF_CHOICE, "multiple_scattering"},
     {37, MUSURF_CHOICE, "smith"},
+    {38, MUSURF_FLAG, "blurs"},
 };
 enum { KNOWN_COUNT = sizeof KNOWN / sizeof KNOWN[0] };
 

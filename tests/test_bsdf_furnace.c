@@ -54,7 +54,7 @@ static void compensation_follows_blur(void **state) {
         const double *m = maps[k % 3];
         mu_definition d = bsdf_definition((mu_ndf[]){MU_GGX, MU_GTR, MU_BECKMANN}[k / 4],
                                           (double[]){0.05, 0.3, 0.6}[k / 4], 0.4, m[0], m[1], m[2], m[3]);
-        d.multiple = MU_COMPENSATED;
+        d.multiple = MU_COMPENSATED, d.compensation_blurs = 1;
         scene b;
         make(&b, &d);
         for (int v = 0; v < 4; v++) {
@@ -70,8 +70,31 @@ static void compensation_follows_blur(void **state) {
     }
 }
 
+/* Without tables for it (compensation_blurs) what is blurred scatters singly, bit by bit. */
+static void blur_without_tables_is_single(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        mu_definition d = bsdf_definition(MU_BECKMANN, 0.3, 2, 1, 2, 0, 1), once;
+        if (k) d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
+        once = d, d.multiple = MU_COMPENSATED;
+        scene a, b;
+        make(&a, &d), make(&b, &once);
+        const double wo[3] = {0.6, 0.48, 0.64};
+        const float wi[3] = {0.48f, -0.64f, 0.6f};
+        mu_value_f x, y, sharp;
+        view(&a, wo), view(&b, wo);
+        mu_eval_f(&a.c, wi, &sharp);
+        mu_blur_f(&a.c, 0.7f), mu_blur_f(&b.c, 0.7f);
+        mu_eval_f(&a.c, wi, &x), mu_eval_f(&b.c, wi, &y);
+        assert_true(x.f[0] > 0 && x.f[0] == y.f[0] && x.pdf == y.pdf && x.pdf_reverse == y.pdf_reverse);
+        assert_true(sharp.f[0] != x.f[0]);
+        free(a.memory), free(b.memory);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(compensation_holds_where_it_is_hard),
+                                       cmocka_unit_test(blur_without_tables_is_single),
                                        cmocka_unit_test(compensation_follows_blur)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@
 static mu_definition varying(mu_ndf ndf, double alpha, double error) {
     mu_definition d = bsdf_definition(ndf, alpha, 2, 1, 0, 0, 1);
     d.multiple = MU_COMPENSATED, d.compensation_varies = 1, d.compensation_error = error;
+    d.compensation_blurs = 1;
     return d;
 }
 

@@ -25,7 +25,7 @@ static size_t floats(const mu_definition *d) {
     const int tilted = d->tilt[0] != 0 || d->tilt[1] != 0 || d->ndf == MU_TABULATED || d->ndf == MU_CUSTOM;
     const size_t one = tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME;
     const size_t side = (1u << BLUR_HALVINGS) + 1, blurred = (tilted ? 32u : 8u) * 2 * side * side;
-    return (one + ALBEDO_BLURS * blurred) * (d->transmission ? 2 : 1);
+    return (one + (d->compensation_blurs ? ALBEDO_BLURS * blurred : 0)) * (d->transmission ? 2 : 1);
 }
 
 /* GGX of the same masking: what blurring makes of any distribution. */
@@ -37,7 +37,9 @@ static mu_definition blurred(const mu_definition *single) {
 
 /* Of a grid of its own, and of GGX's. */
 static size_t grid_tables(const mu_definition *d) {
-    return !d->compensation_varies ? 0 : (size_t)ALBEDO_GRID_TABLES * (d->ndf == MU_GGX ? 1 : 2);
+    return !d->compensation_varies
+               ? 0
+               : (size_t)ALBEDO_GRID_TABLES * (d->compensation_blurs && d->ndf != MU_GGX ? 2 : 1);
 }
 static size_t grid_floats(const mu_definition *d) {
     return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) *
@@ -129,11 +131,10 @@ static size_t make_grid(const albedo_source *source, mu_albedo *table, float *va
 /* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
 static size_t make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
                          size_t used) {
-    const int is_ggx = source->definition->ndf == MU_GGX;
     const mu_definition ggx = blurred(source->definition);
     used += make_grid(source, table, out->values + used, &out->grid, &out->unsure);
-    out->blurred = out->grid;
-    if (is_ggx) return used;
+    if (source->definition->ndf == MU_GGX) out->blurred = out->grid, out->blurs = 1;
+    if (!out->blurs || out->blurred.table) return used;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
     return used +
            make_grid(source, table + ALBEDO_GRID_TABLES, out->values + used, &out->blurred, &out->unsure);
@@ -149,10 +150,12 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     albedo_slope slopes[ALBEDO_SLOPES];
     if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
     size_t used = mu_albedo_make(&source, &out->level[0], out->values, most);
-    out->levels = 1;
+    out->levels = 1, out->blurs = d->compensation_blurs;
     out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, {NULL, NULL}};
-    used = d->compensation_varies ? make_grids(&source, out, (void *)grid, single_at, used)
-                                  : make_blurs(&source, out, used, most);
+    if (d->compensation_varies)
+        used = make_grids(&source, out, (void *)grid, single_at, used);
+    else if (out->blurs)
+        used = make_blurs(&source, out, used, most);
     float own = 0;
     for (int k = 0; k < (d->transmission ? 2 : 1); k++) own = fmaxf(own, out->level[0].side[k].unsure);
     if (own > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, own);

@@ -9,9 +9,9 @@
  * few tables serve all M, and the first and last of them what is beyond. The average of such a mean is no mean of averages:
  * ln of it is tabulated too, quadratic between nodes. A tilt has edges of its own: there each table keeps to its own frame.
  *
- * A surface has one table, and one for each of some roughnesses to which it may be blurred, from its own least on. For an M
- * of the point (compensation_varies) it has a grid over A and B instead of those (albedo_grid.c), and one of GGX, which is
- * what blurring makes of it.
+ * A surface has one table, and, if it may be blurred (compensation_blurs), one for each of some roughnesses from its own least on.
+ * For an M of the point (compensation_varies) it has a grid over A and B instead of those (albedo_grid.c), and one of GGX,
+ * which is what blurring makes of it.
  */
 #ifndef MU_ALBEDO_SET_H
 #define MU_ALBEDO_SET_H
@@ -43,6 +43,7 @@ static inline int albedo_grid_node(int i, int j) {
 }
 
 struct mu_albedo_set {
+    int blurs; /* there are tables for what is blurred */
     int levels;                             /* 1 + blurs */
     float unsure;                           /* of level[0], and of the grids */
     size_t bytes;                           /* that it takes */

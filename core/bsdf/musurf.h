@@ -133,6 +133,9 @@ typedef struct mu_definition {
     /* True: tables for an M of the point too (mu_bind), of reflection by what is level, and isotropic before M, at slope
      * roughnesses of up to 2 along its axes (coarser tables reach to 18); else such an M scatters singly. Takes seconds. */
     int compensation_varies;
+    /* True: tables for what mu_blur makes of it, too, which take most of the time there: else a blurred closure scatters
+     * singly. GGX of compensation_varies has them anyway. */
+    int compensation_blurs;
     /* True: the tables were made with another surface of this very definition (mu_surface_tables), of either precision, which
      * must outlive this one. Its size does not ask which. */
     int compensation_borrows;

@@ -234,6 +234,7 @@ void MU(mu_blur)(closure *c, real alpha) {
         if (!MU(map_widen)(&wide, roughness, (double)alpha)) return;
         c->map = wide;
     }
+    if (same == PLAN_COMPENSATED && !multiple_of(s)->tables->blurs) same = PLAN_FULL; /* scatters singly */
     c->kernel = ggx->plans[same < PLAN_COUNT ? same : PLAN_GENERAL];
     c->alpha = larger(c->alpha, alpha);
     c->has_footprint = c->is_delta = 0;

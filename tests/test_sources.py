@@ -223,6 +223,12 @@ class Refusals(Pictures):
             (dict(ndf="phong", exponent={"expression": "1 + u"}, rotation={"expression": "u"}, theta_x={"expression": "u"}), "cannot vary too"),
             (dict(fresnel={"schlick": {"texture": "good.exr"}}), "fresnel.schlick", "cannot vary over the surface"),
             (dict(alpha={"texture": "bad.exr", "range": [0.5, 1]}, rotation={"expression": "u"}), "material.rotation", "beside a picture only transform"),
+            (dict(alpha={"expression": "u/0"}), "material.alpha: gives inf", "finite", "all places"),
+            (dict(alpha={"expression": "-0.1 - u"}), "material.alpha: gives -0.1", "at least 0", "all places"),
+            (dict(rotation={"expression": "sqrt(-1 - v)"}, alpha_x=0.1), "material.rotation: gives nan", "finite"),
+            (dict(transform={"expression": ["u", "u", "v", "v"]}), "material.transform: gives [[", "invertible"),
+            (dict(jacobian={"u": "u", "v": "u"}), "material.jacobian: gives [[1, 0], [1, 0]]", "invertible"),
+            (dict(jacobian={"u": "u + 0/0", "v": "v"}), "material.jacobian: gives [[nan, nan], [0, 1]]", "finite"),
             (dict(jacobian={"u": "u"}), "jacobian.v"),
             (dict(jacobian={"u": "u", "v": "v + w"}), "jacobian.v", "no formula", "knows u, v, pi"),
             (dict(jacobian={}), "needs a named \"map\""),
@@ -236,6 +242,20 @@ class Refusals(Pictures):
         self.refused(microfacet(alpha={"texture": "other.exr"}, stretch={"texture": "bad.exr", "wrap": "clamp"}),
                      "material.stretch", "have to be the same")
 
+    def test_bad_places_are_counted(self):
+        """A half of the unit square: a warning with its share; the rest is what it is."""
+        for parameters, *words in ((dict(alpha={"expression": "u - 0.5"}), "alpha: gives -0.492188", "at least 0"),
+                                   (dict(alpha={"expression": "0.3 + 0*log(u - 0.5)"}), "alpha: gives nan", "finite"),
+                                   (dict(stretch={"expression": "1.5 - u"}), "stretch: gives 1.49219", "below 1"),
+                                   (dict(jacobian={"u": "max(u, 0.5)", "v": "v"}), "jacobian: gives [[0, 0], [0, 1]]", "invertible")):
+            with self.subTest(parameters):
+                done = musurf("render", self.scene(microfacet(**parameters)), "-o", self.folder / "out.exr", "--progress", "none")
+                self.assertEqual(done.returncode, 0, done.err)
+                warning = [line for line in done.err.splitlines() if "warning" in line]
+                self.assertEqual(len(warning), 1, done.err)
+                for word in (*words, "2048 of 64 x 64 places", "scene.json:1:"):
+                    self.assertIn(word, warning[0])
+
     def test_attributes(self):
         grid = Attributes("grid")
         grid.folder = self.folder
@@ -244,6 +264,8 @@ class Refusals(Pictures):
         self.refused(microfacet(alpha={"attribute": "size"}), "$.objects[0]", "no property \"size\"", mesh="m")
         grid.ply("m.ply", vertices + vertices[:1], faces, {"age": [0.2] * len(vertices) + [0.3]})
         self.refused(microfacet(alpha={"attribute": "age"}), "$.objects[0]", "0.2 and 0.3", mesh="m")
+        grid.ply("m.ply", vertices, faces, {"age": [0.2, -0.3] + [0.2] * (len(vertices) - 2)})
+        self.refused(microfacet(alpha={"attribute": "age"}), "$.objects[0]", "vertex at (0, -1, 0)", "\"age\" of -0.3", "at least 0", mesh="m")
 
 
 class Explain(Pictures):

@@ -9,6 +9,7 @@
 
 #include "core/render/material_file.h"
 #include "core/render/blend.h"
+#include "core/render/formula_check.h"
 #include "core/render/varying.h"
 
 /* What the plugin says while compiling goes to the place of the parameter it speaks of. */
@@ -231,7 +232,9 @@ static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_pl
     material->digest = digest_of(&settings);
     _Bool good = 1;
     material->tension = deforming && find_varying_transform(material->type);
-    if (jacobian.value) good = mu_jacobian_read(&material->jacobian, &jacobian, error);
+    if (jacobian.value)
+        good = mu_jacobian_read(&material->jacobian, &jacobian, error) &&
+               mu_jacobian_check(&material->jacobian, &jacobian, error);
     material->digest = digest_picture(material->digest, &material->jacobian.displacement.picture);
     /* what composes M of sources puts the rest before it, too */
     const _Bool composes =

@@ -31,6 +31,22 @@ static _Bool number_all(mu_scene *scene, mu_error *error) {
     return 1;
 }
 
+/* What a picture's texels are held to (source_picture.c). */
+static _Bool check_range(const mu_mesh *mesh, const mu_source *source, int number, const float *values,
+                         const mu_place *place, mu_error *error) {
+    char range[160];
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const float *at = mesh->positions + 3 * i;
+        if (mu_param_allows(source->param, (double)values[i])) continue;
+        mu_param_range(source->param, range, sizeof range);
+        return mu_place_fail(place, error,
+                             "%s: the vertex at (%g, %g, %g) has a \"%s\" of %g, from which its material takes %s; it must be %s",
+                             mesh->file, (double)at[0], (double)at[1], (double)at[2], source->name[number],
+                             (double)values[i], source->param->name, range);
+    }
+    return 1;
+}
+
 static _Bool read_of(mu_reader *reader, const mu_place *place, const mu_object *object, uint32_t material) {
     mu_scene *scene = reader->scene;
     const mu_varying *varying = scene->materials[material].material.varying;
@@ -48,6 +64,7 @@ static _Bool read_of(mu_reader *reader, const mu_place *place, const mu_object *
             float **at = &mesh->attributes[source->attribute[c]];
             if (!*at) *at = mu_mesh_attribute(mesh, source->name[c], &why);
             if (!*at) return mu_place_fail(place, reader->error, "%s", why.text);
+            if (!check_range(mesh, source, c, *at, place, reader->error)) return 0;
         }
     }
     return 1;

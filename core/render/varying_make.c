@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/render/covariance.h"
+#include "core/render/formula_check.h"
 #include "core/render/varying.h"
 
 static _Bool same_placement(const mu_placement *a, const mu_placement *b) {
@@ -22,7 +23,9 @@ static _Bool check(mu_varying *v, const mu_place *place, mu_error *error) {
     for (size_t i = 0; i < v->count; i++) {
         const mu_source *s = v->sources + i;
         if (!mu_source_is_picture(s)) {
+            const mu_place member = mu_place_member(place, s->param->name);
             v->pointwise = 1;
+            if (s->kind == MU_SOURCE_EXPRESSION && !mu_formula_check(s, &member, error)) return 0;
             continue;
         }
         v->pictured = 1;
@@ -70,7 +73,6 @@ static _Bool put_map(const mu_varying *v, const musurf_material *material, const
     mu_covariance_of(whole, s);
     for (int i = 0; i < 4; i++) texel[i] = m[i];
     for (int i = 0; i < 3; i++) texel[4 + i] = (float)s[i];
-    texel[7] = 0;
     texel[7] = 0;
     return isfinite(texel[4]) && isfinite(texel[5]) && isfinite(texel[6]) && texel[4] + texel[6] > 0;
 }

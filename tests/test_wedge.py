@@ -92,7 +92,7 @@ class Wedge(unittest.TestCase):
                             ("gamma=1::2", ("gamma",)), ("gamma=1..2/1", ("A..B/N",)),
                             ("gamma=1,gamma=2", ("varies twice",)),
                             ("gamma=1,ball.gamma=2", ("the same", "$.materials.ball.gamma")),
-                            ("$.lights[7].rotation=1", ("$.lights[7]",)), ("$.=1", ("no path",)),
+                            ("$.lights[7].rotation=1", ("has no $.lights[7], for $.lights[7].rotation",)), ("ball.alpha.x=1", ("has no $.materials.ball.alpha.x",)), ("$.=1", ("no path",)),
                             ("$.film[=1", ("no path",)), ("ball.alpha=" + ":".join(["1"] * 1025), ("1024",)),
                             ("ball.alpha=0..1/40,gamma=1..2/40", ("1024 cells",)),
                             ("$.film.width=8:16", ("one size",)),

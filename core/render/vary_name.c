@@ -99,14 +99,13 @@ _Bool mu_vary_set(const char *path, json_t *value, mu_document *scene, mu_error 
     const char *at = path + 1;
     mu_step step;
     while (1) {
-        const char *const before = at;
         if (!next_step(&at, &step))
             return mu_fail(error, "%s is no path; steps are .KEY and [INDEX], as in $.objects[0].radius", path);
         const _Bool fits = step.key[0] ? json_is_object(here) : step.index < json_array_size(here);
         json_t *const next = step.key[0] ? json_object_get(here, step.key) : json_array_get(here, step.index);
         if (!fits || (*at && !next))
-            return mu_fail(error, "%s: has no %.*s, of which %s is a part", scene->name,
-                           (int)((fits ? at : before) - path), path, path);
+            return mu_fail(error, "%s: has no %.*s%s%s", scene->name, (int)(at - path), path,
+                           *at ? ", for " : "", *at ? path : "");
         if (!*at) break;
         here = next;
     }

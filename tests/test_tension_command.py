@@ -260,6 +260,7 @@ class Tension(unittest.TestCase):
                 ("fewer.obj", obj(points, uv, faces[:1]), "1 faces .*2: both must be one mesh"),
                 ("more.obj", obj(points + [(2, 2, 2)], uv, faces), "5 vertices .*4"),
                 ("other.obj", obj(points, uv, [(0, 1, 2), (3, 1, 2)]), "corner 1 of face 1"),
+                ("turned.obj", obj(points, uv, [(0, 1, 2), (1, 2, 3)]), "face 1 .from 0. runs the other way round"),
                 ("quad.obj", obj(points, uv, [(0, 1, 2, 3), (3, 2, 1)]), "face 0 has 4 vertices"),
                 ("nan.obj", obj(points[:3] + [(math.nan, 0, 0)], uv, faces), r"nan.obj:4: .*nan"),
                 ("inf.ply", ply(points[:3] + [(math.inf, 0, 0)], uv, faces), "vertex 3 .*inf"),
@@ -274,6 +275,8 @@ class Tension(unittest.TestCase):
                 self.refuse(good, self.put(name, text), pattern)
         self.refuse(good, self.folder / "missing.obj", "No such file")
         self.refuse(good, good, "no/such/folder|No such file", "-o", self.folder / "no/such/folder.ply")
+        self.refuse(good, good, "-o is .*m.obj.*ends in .ply", "-o", self.folder / "m.obj")
+        self.refuse(good, good, "--picture is .*p.png.*ends in .svg", "--picture", self.folder / "p.png")
         bare = self.put("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         done = musurf("tension", bare, bare, "--picture", self.folder / "no.svg")
         self.assertEqual((done.returncode, done.out), (2, ""))

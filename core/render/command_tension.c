@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "core/render/command.h"
 #include "core/render/error.h"
@@ -131,9 +132,18 @@ static _Bool answer_sequence(const mu_asked *asked, const mu_pose *pose, mu_erro
     return good;
 }
 
+static _Bool ends_in(const char *file, const char *ending) {
+    const size_t length = strlen(file), tail = strlen(ending);
+    return length > tail && !strcasecmp(file + length - tail, ending);
+}
+
 static int answer_all(const mu_asked *asked) {
     mu_error error = {.text = ""};
     mu_pose pose;
+    if (asked->output && !ends_in(asked->output, ".ply"))
+        return mu_refuse(&usage, "-o is \"%s\"; it must be a name that ends in .ply", asked->output);
+    if (asked->picture && !ends_in(asked->picture, ".svg"))
+        return mu_refuse(&usage, "--picture is \"%s\"; it must be a name that ends in .svg", asked->picture);
     const _Bool sequence = mu_sequence_is(asked->deformed);
     if (!sequence && asked->frame != MU_NO_FRAME)
         return mu_refuse(&usage, "--frame is of a sequence, such as name_####.ply, which %s is not",

@@ -12,6 +12,14 @@
 #include "core/render/text.h"
 #include "core/tension/stretch.h"
 
+/* Whether face f has the same corners, from the last to the first. */
+static _Bool is_reversed(const mu_polygons *a, const mu_polygons *b, uint32_t f) {
+    const uint32_t first = a->first[f], end = a->first[f + 1];
+    for (uint32_t i = first; i < end; i++)
+        if (a->vertex[i] != b->vertex[first + (end - 1 - i)]) return 0;
+    return 1;
+}
+
 static _Bool compare(const mu_polygons *a, const mu_polygons *b, mu_error *error) {
     if (a->vertices != b->vertices)
         return mu_fail(
@@ -27,7 +35,12 @@ static _Bool compare(const mu_polygons *a, const mu_polygons *b, mu_error *error
             return mu_fail(error, "%s: face %u has %u vertices, in %s %u: both must be one mesh", b->file, f,
                            b->first[f + 1] - b->first[f], a->file, count);
         for (uint32_t i = a->first[f]; i < a->first[f + 1]; i++)
-            if (a->vertex[i] != b->vertex[i])
+            if (a->vertex[i] != b->vertex[i] && is_reversed(a, b, f))
+                return mu_fail(error,
+                               "%s: face %u (from 0) runs the other way round than in %s: there is no tension of a "
+                               "mesh that is mirrored",
+                               b->file, f, a->file);
+            else if (a->vertex[i] != b->vertex[i])
                 return mu_fail(
                     error,
                     "%s: corner %u of face %u (both from 0) is vertex %u, in %s %u: both must be one mesh",

@@ -88,7 +88,7 @@ static void test_what_is_no_formula(void **state) {
     } wrong[] = {{"", "at its end"},           {"v + 2*", "at its end"},  {"v + 2*u^", "at its end"},
                  {"2 u", "character 3"},       {"w", "character 1"},      {"sin u", "\"(\" after a function"},
                  {"atan2(u)", "second"},       {"(u", "\")\""},           {"u)", "character 2"},
-                 {"1e999", "finite"},          {"u ** 2", "character 4"}, {"sinus(u)", "knows u, v, pi"},
+                 {"1e999", "finite"},          {"0x10*u", "decimal"},        {"u ** 2", "character 4"}, {"sinus(u)", "knows u, v, pi"},
                  {"u + x1*2", "(character 5)"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         mu_expression e;

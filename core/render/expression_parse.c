@@ -62,6 +62,7 @@ static _Bool emit(mu_parser *p, int code, double number, int change) {
 static _Bool number(mu_parser *p) {
     char *end;
     const double value = strtod(p->at, &end);
+    if (p->at[0] == '0' && (p->at[1] == 'x' || p->at[1] == 'X')) return fail(p, "needs a decimal number");
     if (!isfinite(value)) return fail(p, "has no finite number");
     p->at = end;
     return emit(p, MU_STEP_NUMBER, value, 1);

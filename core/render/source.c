@@ -87,7 +87,7 @@ static _Bool read_attribute(mu_source *source, const mu_place *place, mu_error *
     if (!mu_source_texts(&names, source->count, text, error)) return 0;
     for (int i = 0; i < source->count; i++) {
         if (!text[i][0] || strlen(text[i]) >= MU_ATTRIBUTE_NAME)
-            return mu_place_fail(&names, error, "is a name of 1 to %d characters", MU_ATTRIBUTE_NAME - 1);
+            return mu_place_fail(&names, error, "must be a name of 1 to %d characters", MU_ATTRIBUTE_NAME - 1);
         snprintf(source->name[i], sizeof source->name[i], "%s", text[i]);
     }
     return 1;

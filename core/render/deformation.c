@@ -36,10 +36,11 @@ static _Bool compare(const mu_polygons *a, const mu_polygons *b, mu_error *error
                            b->first[f + 1] - b->first[f], a->file, count);
         for (uint32_t i = a->first[f]; i < a->first[f + 1]; i++)
             if (a->vertex[i] != b->vertex[i] && is_reversed(a, b, f))
-                return mu_fail(error,
-                               "%s: face %u (from 0) runs the other way round than in %s: there is no tension of a "
-                               "mesh that is mirrored",
-                               b->file, f, a->file);
+                return mu_fail(
+                    error,
+                    "%s: face %u (from 0) runs the other way round than in %s: there is no tension of a "
+                    "mesh that is mirrored",
+                    b->file, f, a->file);
             else if (a->vertex[i] != b->vertex[i])
                 return mu_fail(
                     error,

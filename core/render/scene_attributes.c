@@ -40,7 +40,8 @@ static _Bool check_range(const mu_mesh *mesh, const mu_source *source, int numbe
         if (mu_param_allows(source->param, (double)values[i])) continue;
         mu_param_range(source->param, range, sizeof range);
         return mu_place_fail(place, error,
-                             "%s: the vertex at (%g, %g, %g) has a \"%s\" of %g, from which its material takes %s; it must be %s",
+                             "%s: the vertex at (%g, %g, %g) has a \"%s\" of %g, from which its material "
+                             "takes %s; it must be %s",
                              mesh->file, (double)at[0], (double)at[1], (double)at[2], source->name[number],
                              (double)values[i], source->param->name, range);
     }

@@ -232,7 +232,7 @@ static void lay(const closure *c, mu_albedo *t) {
 }
 
 /* n by which 8 steps of S say E best, at two azimuths. */
-static int choose_roots(const albedo_source *source, mu_albedo *t, double core) {
+static int best_roots(const albedo_source *source, mu_albedo *t, double core, double *error_of_it) {
     enum { MOST = 4, STEPS = 16, AZIMUTHS = 2 };
     double least_error = INFINITY;
     int best = 0;
@@ -248,7 +248,24 @@ static int choose_roots(const albedo_source *source, mu_albedo *t, double core) 
         }
         if (error < least_error) least_error = error, best = t->roots;
     }
+    *error_of_it = least_error;
     return best;
+}
+
+/* And sqrt(S) if that halves what is off. */
+static void choose_roots(const albedo_source *source, mu_albedo *t, double core) {
+    double plain, rooted;
+    const int roots = best_roots(source, t, core, &plain);
+    if (!t->rooted && !source->trusting) {
+        t->rooted = 1;
+        const int others = best_roots(source, t, core, &rooted);
+        if (rooted < plain / 4) {
+            t->roots = others;
+            return;
+        }
+        t->rooted = 0;
+    }
+    t->roots = roots;
 }
 
 size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, size_t most) {
@@ -257,7 +274,11 @@ size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, 
     bind_source(source, up, &c);
     lay(&c, t);
     const double core = mu_albedo_core(source, &c);
-    t->roots = source->roots ? source->roots - 1 : choose_roots(source, t, core);
+    t->rooted = t->quadrants > 1;
+    if (source->roots)
+        t->roots = source->roots - 1;
+    else
+        choose_roots(source, t, core);
     const int sides = source->surface->transmission ? 2 : 1;
     size_t used = 0;
     t->side[1].cells = 0;

@@ -12,8 +12,8 @@
  * around the normal, and 1 at the horizon, where E of a rough surface turns to 1 over decades of w.z: n = 0, 1, 2 the rougher
  * it is. k has u see both the axes of M and the azimuths of the microsurface before M. Solid angle by
  *     du dS = 2^(1-n) (1 - S)^(1-2^n) a b ((1-u)² + k² u²) / (k (r + w.z)³) dw.
- * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and sqrt(S) takes the place of S in
- * interpolation; cells are drawn from uniformly in S nevertheless.
+ * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and where tails are heavy (slopes
+ * of no variance) E has a tip there, r^(2 gamma - 2) of std and gtr: sqrt(S) takes the place of S in interpolation; cells are drawn from uniformly in S nevertheless.
  * The square [0, 1]² is cut into patches, and each of them into as many cells as its E asks for: halved along either axis
  * until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
  * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic has no u.
@@ -52,6 +52,7 @@ typedef struct mu_albedo_side {
 typedef struct mu_albedo {
     mu_albedo_frame frame;  /* of the M that it was made for */
     int roots;              /* n */
+    int rooted;             /* sqrt(S) takes the place of S */
     int quadrants, columns; /* 1 or 4; 1 or ALBEDO_COLUMNS */
     mu_albedo_side side[2]; /* above; below too if the surface transmits */
 } mu_albedo;
@@ -66,11 +67,11 @@ typedef struct albedo_place {
 } albedo_place;
 
 static inline float albedo_row(const mu_albedo *t, float s) {
-    return t->quadrants == 1 ? s : sqrtf(s);
+    return t->rooted ? sqrtf(s) : s;
 }
 /* And back. */
 static inline double albedo_s(const mu_albedo *t, double row) {
-    return t->quadrants == 1 ? row : row * row;
+    return t->rooted ? row * row : row;
 }
 
 static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_frame *f, const float w[3]) {
@@ -112,7 +113,7 @@ static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *sid
     const float share = side->cumulative[cell] - (cell ? side->cumulative[cell - 1] : 0);
     const float rows = (float)(ALBEDO_ROWS << p->log_s),
                 row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
-    const float over_height = t->quadrants == 1 ? rows / 4 : rows * rows / (2 * row + 1);
+    const float over_height = (t->rooted ? rows * rows / (2 * row + 1) : rows) / (t->quadrants == 1 ? 4 : 1);
     return fminf(share * (float)(t->columns << p->log_u) * over_height * at.stretch, 0x1p+126f);
 }
 

@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -283,13 +284,19 @@ class Render(unittest.TestCase):
         pathlib.Path(self.path("tile.obj")).write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         scene = dict(SCENE, meshes={"tile": mesh}, objects=[{"mesh": "tile", "material": "clay"}])
         scene["lights"] = [{"type": "environment", "image": "sky.partial.exr"}]
-        self.image("sky.partial.exr", "--size", "8x4", "--spp", "1")
+        self.image("sky.partial.exr", "--size", "8x4", "--spp", "1", "--png", self.path("rough.png"))
+        shutil.copy(self.path("rough.png"), self.path("bumps.png"))
+        glossy = {"material": "musurf.microfacet", "alpha": {"texture": "rough.png", "channels": "R"}}
+        pathlib.Path(self.path("glossy.json")).write_text(json.dumps(glossy))
+        bent = {"material": "musurf.microfacet", "jacobian": {"displacement": "bumps.png", "scale": 0.001}}
+        scene["materials"] = dict(scene["materials"], glossy={"file": "glossy.json"}, bent=bent)
         pathlib.Path(self.scene).write_text(json.dumps(scene))
         os.link(self.scene, self.path("other.json"))
         before = {name: pathlib.Path(self.path(name)).read_bytes() for name in self.files()}
         out = ["-o", self.path("out.exr")]
         for arguments in ([*out, "--png", self.scene], [*out, "--png", self.path("other.json")],
-                          [*out, "--png", self.path("tile.obj")], ["-o", self.path("sky.partial.exr")],
+                          [*out, "--png", self.path("tile.obj")], [*out, "--png", self.path("rough.png")],
+                          [*out, "--png", self.path("glossy.json")], [*out, "--png", self.path("bumps.png")], ["-o", self.path("sky.partial.exr")],
                           ["-o", self.path("sky.exr")]):
             with self.subTest(arguments=arguments):
                 self.refuse(self.scene, *arguments, word="of which the scene is made")

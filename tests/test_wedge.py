@@ -108,6 +108,25 @@ class Wedge(unittest.TestCase):
         for arguments in ((), ("--vary", "gamma=1"), ("--vary", "gamma=1", "-o", "/nowhere/s.exr"),
                           ("--vary", "gamma=1", "--cells", self.scene), (self.scene, "--vary", "gamma=1")):
             self.assertEqual(self.wedge(*arguments).returncode, 2)
+        for arguments, words in ((("-o", self.folder / "s.png"), "ends in .exr"), (("--png", self.scene), "ends in .png"),
+                                 (("-o", self.folder / "sky.exr"), "of which the scene is made")):
+            self.scene.write_text(json.dumps(dict(SCENE, lights=[{"type": "environment", "image": "sky.exr"}])))
+            exr.write(self.folder / "sky.exr", {c: np.ones((2, 4)) for c in "RGB"})
+            before = (self.folder / "sky.exr").read_bytes(), self.scene.read_text()
+            done = self.wedge("--vary", "gamma=1:2", *arguments)
+            self.assertEqual((done.returncode, done.err.count("\n")), (2, 1), done.err)
+            self.assertIn(words, done.err)
+            self.assertEqual(((self.folder / "sky.exr").read_bytes(), self.scene.read_text()), before)
+
+    def test_examples_of_the_help(self):
+        """They are of a scene that is here, and mean something in it."""
+        root = pathlib.Path(__file__).resolve().parent.parent
+        examples = [line.split()[1:] for line in musurf("wedge", "--help").out.splitlines() if line.startswith("  musurf wedge ")]
+        self.assertEqual(len(examples), 2)
+        for _, scene, flag, vary, *_ in examples:
+            self.assertEqual(flag, "--vary")
+            done = musurf("wedge", root / scene, flag, vary.strip("'"), "-o", self.folder / "s.exr", "--size", "4x4", "--spp", 1, "--quiet")
+            self.assertEqual(done.returncode, 0, done.err)
 
     def test_interrupted(self):
         with subprocess.Popen([MUSURF, "wedge", self.scene, "--vary", "gamma=1..2/9", "--spp", "100000", "--cells",

@@ -11,13 +11,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "core/render/command.h"
 #include "core/render/explain.h"
 #include "core/render/image.h"
+#include "core/render/inputs.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
 #include "core/render/render_scene.h"
@@ -250,27 +250,21 @@ static int name_files(mu_job *job, int argc, char **argv) {
     return writable ? MU_EXIT_OK : complain(job, &error, MU_EXIT_REFUSED);
 }
 
-/* Whether writing `output` would replace `input`. */
-static _Bool is_same_file(const char *output, const char *input) {
-    struct stat a, b;
-    return output && input && !stat(output, &a) && !stat(input, &b) && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
 /* No output may replace, and none that is removed in the end be, what the scene is made of. */
 static _Bool keep_inputs(const mu_job *job, mu_error *error) {
     const char *const outputs[] = {job->options.output, job->options.png, job->partial, job->resume};
+    const size_t count = sizeof outputs / sizeof *outputs;
     const mu_scene *scene = &job->scene;
-    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; ++i) {
-        const char *input = is_same_file(outputs[i], job->options.scene) ? job->options.scene : NULL;
-        for (uint32_t k = 0; k < scene->mesh_count; ++k)
-            if (is_same_file(outputs[i], scene->meshes[k].file)) input = scene->meshes[k].file;
-        for (uint32_t k = 0; k < scene->light_count; ++k)
-            if (is_same_file(outputs[i], scene->lights[k].image)) input = scene->lights[k].image;
-        if (input)
-            return mu_fail(error, "%s: would replace %s, of which the scene is made", outputs[i], input);
-    }
-    return 1;
+    mu_document document;
+    for (size_t i = 0; i < count; ++i)
+        for (uint32_t k = 0; k < scene->mesh_count; ++k) /* of sequences the file that the frame stands for */
+            if (mu_is_same_file(outputs[i], scene->meshes[k].file))
+                return mu_fail(error, "%s: would replace %s, of which the scene is made", outputs[i],
+                               scene->meshes[k].file);
+    if (!mu_document_parse(&document, job->options.scene, scene->text, strlen(scene->text), 1, error)) return 0;
+    const _Bool good = mu_inputs_keep(&document, outputs, count, error);
+    mu_document_free(&document);
+    return good;
 }
 
 /* The scene with what the command line changes about it. */

@@ -5,11 +5,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/render/command.h"
 #include "core/render/error.h"
+#include "core/render/inputs.h"
 #include "core/render/options.h"
+#include "core/render/output.h"
 #include "core/render/output_stream.h"
 #include "core/render/sequence.h"
 #include "core/render/tension_files.h"
@@ -90,6 +91,8 @@ static _Bool write_files(const mu_asked *asked, const mu_deformation *d, mu_erro
 static _Bool answer(const mu_asked *asked, const mu_pose *pose, mu_error *error) {
     mu_deformation d;
     char line[768];
+    if (mu_is_same_file(asked->output, asked->rest) || mu_is_same_file(asked->output, asked->deformed))
+        return mu_fail(error, "%s: would replace a mesh that is compared", asked->output);
     if ((asked->output && !mu_output_check(asked->output, error)) ||
         (asked->picture && !mu_output_check(asked->picture, error)) ||
         !mu_deformation_read(&d, asked->rest, asked->deformed, pose, error))
@@ -132,17 +135,12 @@ static _Bool answer_sequence(const mu_asked *asked, const mu_pose *pose, mu_erro
     return good;
 }
 
-static _Bool ends_in(const char *file, const char *ending) {
-    const size_t length = strlen(file), tail = strlen(ending);
-    return length > tail && !strcasecmp(file + length - tail, ending);
-}
-
 static int answer_all(const mu_asked *asked) {
     mu_error error = {.text = ""};
     mu_pose pose;
-    if (asked->output && !ends_in(asked->output, ".ply"))
+    if (asked->output && !mu_output_ends_in(asked->output, ".ply"))
         return mu_refuse(&usage, "-o is \"%s\"; it must be a name that ends in .ply", asked->output);
-    if (asked->picture && !ends_in(asked->picture, ".svg"))
+    if (asked->picture && !mu_output_ends_in(asked->picture, ".svg"))
         return mu_refuse(&usage, "--picture is \"%s\"; it must be a name that ends in .svg", asked->picture);
     const _Bool sequence = mu_sequence_is(asked->deformed);
     if (!sequence && asked->frame != MU_NO_FRAME)

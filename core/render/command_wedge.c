@@ -14,6 +14,7 @@
 #include "core/render/command.h"
 #include "core/render/contact_sheet.h"
 #include "core/render/image.h"
+#include "core/render/inputs.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
 #include "core/render/render_scene.h"
@@ -45,8 +46,8 @@ static const mu_usage usage = {
     "V       a number, JSON ([[1,0],[0,2]]), or a word (beckmann); A..B/N: N numbers from A to B\n"
     "\n"
     "examples:\n"
-    "  musurf wedge scenes/first.json --vary alpha=.05:.1:.2:.4,gamma=1:2:3.5 --png sheet.png\n"
-    "  musurf wedge scenes/first.json --vary 'stretch=0..0.9/10' --columns 5 -o sheet.exr --cells cells\n"};
+    "  musurf wedge scenes/first.json --vary gold.alpha=.05:.1:.2:.4,gamma=1:2:3.5 --png sheet.png\n"
+    "  musurf wedge scenes/first.json --vary 'gold.stretch=0..0.9/10' --columns 5 -o sheet.exr --cells cells\n"};
 
 typedef struct mu_wedge {
     mu_render_options render; /* of these: scene, output, png, samples, threads, size, seed, quiet, progress */
@@ -196,6 +197,7 @@ static int complain(mu_wedge *wedge, const mu_error *error, int code) {
 
 /* Every cell is read before the first is rendered: an error in the last shall not cost the others. */
 static _Bool try_all(mu_wedge *wedge, mu_error *error) {
+    const char *const outputs[] = {wedge->render.output, wedge->render.png};
     for (size_t cell = 0; cell < wedge->count; ++cell) {
         size_t which[MU_VARY_MOST];
         mu_scene scene;
@@ -203,6 +205,7 @@ static _Bool try_all(mu_wedge *wedge, mu_error *error) {
         if (!read_cell(wedge, which, &scene, error)) return 0;
         const mu_film_settings film = scene.film;
         mu_scene_free(&scene);
+        if (!mu_inputs_keep(&wedge->document, outputs, sizeof outputs / sizeof *outputs, error)) return 0;
         if (cell && (film.width != wedge->sheet.cell_width || film.height != wedge->sheet.cell_height))
             return mu_fail(error, "cells of a sheet must have one size; --size gives it");
         if (!cell) {
@@ -344,6 +347,10 @@ static _Bool read_options(mu_wedge *wedge, int argc, char **argv, int *code) {
         mu_refuse(&usage, "no output is named; -o SHEET.exr, --png SHEET.png or --cells FOLDER is needed");
     else if (render->output && render->png && !strcmp(render->output, render->png))
         mu_refuse(&usage, "-o and --png are the same file");
+    else if (render->output && !mu_output_ends_in(render->output, ".exr"))
+        mu_refuse(&usage, "-o is \"%s\"; it must be a name that ends in .exr", render->output);
+    else if (render->png && !mu_output_ends_in(render->png, ".png"))
+        mu_refuse(&usage, "--png is \"%s\"; it must be a name that ends in .png", render->png);
     else
         return 1;
     return 0;

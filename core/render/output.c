@@ -17,6 +17,12 @@ static size_t folder_length(const char *file) {
     return slash ? (size_t)(slash - file) + 1 : 0;
 }
 
+_Bool mu_output_ends_in(const char *file, const char *ending) {
+    const char *const name = file + folder_length(file);
+    const size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && !strcmp(name + length - tail, ending);
+}
+
 /* Where the file really is, so that a symbolic link keeps pointing at what is renamed into place. */
 static char *resolve(const char *file, mu_error *error) {
     struct stat status;

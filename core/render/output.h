@@ -24,6 +24,8 @@ typedef struct mu_output {
 /* Whether `file` could be written: its folder exists and takes files, and nothing but a writable regular file
  * stands there. Leaves no trace. */
 _Bool mu_output_check(const char *file, mu_error *error);
+/* Whether the file's name, less its folder, is more than `ending` and ends so. */
+_Bool mu_output_ends_in(const char *file, const char *ending);
 _Bool mu_output_open(mu_output *output, const char *file, mu_error *error);
 /* At any offset, in any order. A failure is remembered, so that only commit needs a check. */
 _Bool mu_output_write(mu_output *output, const void *data, size_t bytes, uint64_t offset);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/render/output.h"
 #include "core/render/render.h"
 #include "core/render/sequence.h"
 
@@ -112,11 +113,6 @@ _Bool mu_render_progress(const mu_options *given, mu_render_options *options) {
     return 1;
 }
 
-static _Bool ends_in(const char *text, const char *tail) {
-    const size_t length = strlen(text), end = strlen(tail);
-    return length > end && !strcmp(text + length - end, tail) && text[length - end - 1] != '/';
-}
-
 static _Bool take(mu_render_options *options, int met, const mu_options *given) {
     uint64_t threads, frame;
     switch (met) {
@@ -183,7 +179,7 @@ _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, 
         mu_refuse(usage, "which SCENE? See musurf render --help");
     else if (!options->output && !options->explain)
         mu_refuse(usage, "no output is named; -o OUT.exr is needed");
-    else if (options->output && !ends_in(options->output, ".exr"))
+    else if (options->output && !mu_output_ends_in(options->output, ".exr"))
         mu_refuse(usage, "-o is \"%s\"; it must be a name that ends in .exr (a PNG preview is made by --png)",
                   options->output);
     else if (options->png && !options->output)

@@ -206,14 +206,7 @@ class Groove(Folder):
         self.assertTrue(np.all(met >= 3), met)
 
 
-class Consistency(Folder):
-    def setUp(self):
-        super().setUp()
-        self.files = []
-        for seed in range(3):
-            self.files.append(self.folder / f"{seed}.exr")
-            write_exr(self.files[-1], above.heightfield.make(64, 0.5, 4.0, seed))
-
+class Consistency(above.Realisations):
     def test_shares_add_up(self):
         """With its error; and what transmission says of the first facet, reflection says as well."""
         v = maps.direction(60, 20)

@@ -140,7 +140,9 @@ class AgainstNumpy(Folder):
             self.close(channel["escaped"] + channel["over_limit"] + channel["lost"] + channel["absorbed"], 1)
 
 
-class Consistency(Folder):
+class Realisations(Folder):
+    """Three surfaces of one kind, `files`."""
+
     def setUp(self):
         super().setUp()
         self.files = []
@@ -148,6 +150,8 @@ class Consistency(Folder):
             self.files.append(self.folder / f"{seed}.exr")
             write_exr(self.files[-1], heightfield.make(64, 0.5, 4.0, seed))
 
+
+class Consistency(Realisations):
     def test_light_is_conserved(self):
         """Whatever the number of bounces: shares add up, densities integrate to albedos, sorted groups say the same."""
         for bounces in (1, 3, 64):

@@ -4,8 +4,6 @@
 import argparse
 import json
 import pathlib
-import subprocess
-import sys
 import time
 
 import numpy as np
@@ -13,7 +11,7 @@ import numpy as np
 from crosscheck import povray
 
 from . import charts, deformed, deformed_tables, errors, highlight, render
-from .run import SEED, Progress, count, write
+from .run import SEED, Progress, attempt, count, write
 
 TURN = np.radians(35)
 DEFORMATIONS = [("stretch", ((2.5, 0), (0, 1))), ("shear", ((1, 1), (0, 1))),
@@ -108,13 +106,9 @@ def main(arguments, build):
     if options.quick:
         options.size, options.realisations, options.width, options.fine, options.samples = 128, 4, 48, 12, 64
     options.command = " ".join(["scripts/geometry-tension", *arguments])
-    try:
-        result = run(options, build)
-    except (OSError, ValueError, KeyError, render.RenderError, povray.PovrayError, subprocess.TimeoutExpired) as error:
-        print(f"geometry: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
+    result = attempt(run, options, build)
+    if isinstance(result, int):
+        return result
     for line in deformed_tables.summary(result):
         print(line)
     print(pathlib.Path(options.output) / "deformed.json")

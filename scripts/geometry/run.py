@@ -128,6 +128,17 @@ def count(low):
     return read
 
 
+def attempt(comparison, options, build):
+    """Its result; or, where something stopped it, one line on stderr and the exit code."""
+    try:
+        return comparison(options, build)
+    except (OSError, ValueError, KeyError, render.RenderError, povray.PovrayError, subprocess.TimeoutExpired) as error:
+        print(f"geometry: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
 def main(arguments, build):
     parser = argparse.ArgumentParser("scripts/geometry-pair", formatter_class=argparse.ArgumentDefaultsHelpFormatter, description="A plate of explicit "
                                      "mirror facets in POV-Ray beside the same plate with the fitted material in musurf: same camera, same "
@@ -152,13 +163,9 @@ def main(arguments, build):
     if options.quick:
         options.size, options.realisations, options.width, options.fine, options.samples = 256, 2, 48, 8, 64
     options.command = " ".join(["scripts/geometry-pair", *arguments])
-    try:
-        result = run(options, build)
-    except (OSError, ValueError, KeyError, render.RenderError, povray.PovrayError, subprocess.TimeoutExpired) as error:
-        print(f"geometry: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
+    result = attempt(run, options, build)
+    if isinstance(result, int):
+        return result
     for line in tables.summary(result):
         print(line)
     print(pathlib.Path(options.output) / "geometry.json")

@@ -45,9 +45,8 @@ static const mu_usage usage = {
     "time of "
     "an\n"
     "animation. Without REST it is compared with its own undeformed bind shape.\n"
-    "\"balloon_####.ply\" is a numbered sequence: each file is compared, in order; -o and --picture then "
-    "need "
-    "#, too.\n"
+    "\"balloon_####.ply\" is a numbered sequence: each file is compared, in order, and a warning counts gaps; "
+    "-o and\n--picture then need #, too.\n"
     "out, one line of JSON for each mesh:\n"
     "  \"frame\"     the number, of a sequence\n"
     "  \"summary\"   numbers of \"faces\", \"triangles\", \"vertices\", \"seams\"; least and largest "
@@ -130,6 +129,9 @@ static _Bool answer_sequence(const mu_asked *asked, const mu_pose *pose, mu_erro
                            files[i]);
     if (asked->frame != MU_NO_FRAME) return answer_frame(asked, pose, asked->frame, error);
     _Bool good = mu_sequence_list(asked->deformed, &frames, &count, error);
+    if (good && frames[count - 1] - frames[0] + 1 > (long long)count)
+        mu_warn(error, "%s: of the numbers from %lld to %lld, %lld have no file", asked->deformed, frames[0],
+                frames[count - 1], frames[count - 1] - frames[0] + 1 - (long long)count);
     for (size_t i = 0; good && i < count; i++) good = answer_frame(asked, pose, frames[i], error);
     free(frames);
     return good;

@@ -9,9 +9,11 @@
 #ifndef MUSURF_COMPILED_H
 #define MUSURF_COMPILED_H
 
+#include "core/ibl/ibl.h"
 #include "plugin/musurf_map.h"
 #include "plugin/musurf_parameters.h"
 #include "plugin/musurf_probe.h"
+#include "plugin/musurf_slopes.h"
 
 struct musurf_material {
     parsed parsed;
@@ -20,6 +22,8 @@ struct musurf_material {
     const mu_surface_f *in_float; /* NULL where shading is in double */
     const mu_surface_d *in_double;
     float inner[4]; /* of parsed.inner */
+    mu_ibl_slopes moments; /* before M */
+    int has_moments;
     uint32_t lobes; /* that setup answers */
     uint32_t transmits;
     uint32_t needs;
@@ -45,6 +49,10 @@ mu_sampler musurf_choose_sampler(const mu_definition *definition, int in_float, 
 
 extern const musurf_probe musurf_probe_table;
 extern const musurf_map musurf_map_table;
+extern const musurf_slopes musurf_slopes_table;
+
+/* While the histogram is still there. */
+void musurf_find_moments(musurf_material *material);
 
 uint32_t musurf_setup(const musurf_material *material, const float wo[3], const float *slots, uint32_t mode,
                       void *closure);

@@ -148,6 +148,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
     p.definition.compensation_tables = mu_surface_tables_d(m->in_double),
     p.definition.compensation_borrows = 1;
     if (in_float) m->in_float = mu_surface_make_f(&p.definition, (char *)m + head + double_bytes);
+    musurf_find_moments(m);
     m->parsed.definition.histogram = NULL; /* the host's */
     for (int i = 0; i < 4; i++) m->inner[i] = (float)p.inner[i];
     const int mirror = mu_is_mirror(&p.definition);
@@ -215,6 +216,7 @@ static void describe(const musurf_material *m, musurf_plan *plan) {
 
 static const void *extension(const char *id) {
     if (strcmp(id, MUSURF_MAP_ID) == 0) return &musurf_map_table;
+    if (strcmp(id, MUSURF_SLOPES_ID) == 0) return &musurf_slopes_table;
     return strcmp(id, MUSURF_PROBE_ID) == 0 ? &musurf_probe_table : NULL;
 }
 

@@ -86,7 +86,7 @@ void fixture_ready(path_fixture *f) {
     if (!f->made) fail_msg("%s", error.text);
     f->scratch = aligned_alloc(64, mu_integrator_scratch(&f->scene));
     assert_non_null(f->scratch);
-    f->tracer = (mu_tracer){&f->scene, f->geometry, f->made, 0, 0};
+    f->tracer = (mu_tracer){&f->scene, f->geometry, f->made, 0, 0, NULL};
     for (uint32_t i = 0; i < f->scene.material_count; i++)
         f->tracer.footprints |= f->materials[i].material.footprints;
 }

@@ -56,6 +56,8 @@ NEEDS = {
     "environment": {"lights": [{"type": "environment", "image": "sky.exr"}]},
     "studio": {"lights": [{"type": "studio"}]},
     "constant": {},
+    "filtered_light": {"integrator": {"samples": 1, "depth": 2, "roulette": 2, "by": "split"},
+                       "objects": [{"shape": "sphere", "material": METAL}]},
     "directional_lights": {"lights": [{"type": "directional"}]},
     "rectangle_lights": {"lights": [{"type": "rectangle"}]},
     "glossy_reflection": with_material(),

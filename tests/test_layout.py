@@ -26,8 +26,8 @@ ALLOWED = {
     "core/tension/": ("core/tension/", "core/bsdf/singular.h"),
     "core/ibl/": ("core/ibl/", "core/bsdf/"),
     "core/render/": ("core/render/", "core/surface/", "core/tension/", "core/ibl/", "plugin/musurf_plugin.h", "plugin/musurf_probe.h",
-                     "plugin/musurf_map.h"),
-    "plugin/": ("plugin/", "musurf_plugin.h", "musurf_probe.h", "core/bsdf/"),
+                     "plugin/musurf_map.h", "plugin/musurf_slopes.h"),
+    "plugin/": ("plugin/", "musurf_plugin.h", "musurf_probe.h", "core/bsdf/", "core/ibl/ibl.h"),
     "tests/": ("core/", "plugin/", "tests/"),
 }
 TOP_LEVEL = {"plugin", "core", "scenes", "tests", "scripts", "Makefile", "README.md", "LICENSE", "CHANGELOG.md"}

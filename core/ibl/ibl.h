@@ -34,6 +34,8 @@ typedef struct mu_ibl_slopes {
 
 /* Those of a checked definition under its M. 0 for MU_CUSTOM, which does not tell them. */
 int mu_ibl_slopes_of(const mu_definition *definition, mu_ibl_slopes *out);
+/* Those of a surface with these under a further M (rows): slopes go with M^-T. */
+mu_ibl_slopes mu_ibl_slopes_under(const mu_ibl_slopes *slopes, const double transform[4]);
 /* Those of a surface that consists of `count` others in these shares (any positive numbers; NULL: alike): linear in Sigma
  * plus the products of the means (Section 4.1). */
 mu_ibl_slopes mu_ibl_slopes_mix(size_t count, const mu_ibl_slopes *parts, const double *shares);

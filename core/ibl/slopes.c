@@ -115,6 +115,22 @@ static void matched_histogram(const mu_definition *d, double mean[2], double roo
     for (int k = 0; k < 3; k++) root[k] *= high;
 }
 
+/* Of slopes with the mean `mean` and the covariance root root^T, root lower triangular. */
+static mu_ibl_slopes under(const double mean[2], const double root[3], const double transform[4]) {
+    double same[4], inverse[4];
+    const singular m = singular_of(transform);
+    singular_matrix(&m, m.large, m.small, same, inverse);
+    /* slopes go with M^-T: columns of K = M^-T root, Sigma = K K^T */
+    const double first[2] = {inverse[0] * root[0] + inverse[2] * root[1],
+                             inverse[1] * root[0] + inverse[3] * root[1]},
+                 second[2] = {inverse[2] * root[2], inverse[3] * root[2]};
+    return (mu_ibl_slopes){
+        {inverse[0] * mean[0] + inverse[2] * mean[1], inverse[1] * mean[0] + inverse[3] * mean[1]},
+        first[0] * first[0] + second[0] * second[0],
+        first[0] * first[1] + second[0] * second[1],
+        first[1] * first[1] + second[1] * second[1]};
+}
+
 int mu_ibl_slopes_of(const mu_definition *d, mu_ibl_slopes *out) {
     double mean[2] = {0, 0}, root[3] = {0, 0, 0};
     if (d->ndf == MU_TABULATED) {
@@ -124,19 +140,16 @@ int mu_ibl_slopes_of(const mu_definition *d, mu_ibl_slopes *out) {
         if (square < 0) return 0;
         root[0] = root[2] = sqrt(square);
     }
-    double same[4], inverse[4];
-    const singular m = singular_of(d->transform);
-    singular_matrix(&m, m.large, m.small, same, inverse);
-    /* slopes go with M^-T: columns of K = M^-T root, Sigma = K K^T */
-    const double first[2] = {inverse[0] * root[0] + inverse[2] * root[1],
-                             inverse[1] * root[0] + inverse[3] * root[1]},
-                 second[2] = {inverse[2] * root[2], inverse[3] * root[2]};
-    const double x = d->tilt[0] + mean[0], y = d->tilt[1] + mean[1];
-    *out = (mu_ibl_slopes){{inverse[0] * x + inverse[2] * y, inverse[1] * x + inverse[3] * y},
-                           first[0] * first[0] + second[0] * second[0],
-                           first[0] * first[1] + second[0] * second[1],
-                           first[1] * first[1] + second[1] * second[1]};
+    const double whole[2] = {d->tilt[0] + mean[0], d->tilt[1] + mean[1]};
+    *out = under(whole, root, d->transform);
     return 1;
+}
+
+mu_ibl_slopes mu_ibl_slopes_under(const mu_ibl_slopes *s, const double transform[4]) {
+    double root[3] = {sqrt(fmax(s->xx, 0)), 0, 0};
+    root[1] = root[0] > 0 ? s->xy / root[0] : 0;
+    root[2] = sqrt(fmax(s->yy - root[1] * root[1], 0));
+    return under(s->mean, root, transform);
 }
 
 mu_ibl_slopes mu_ibl_slopes_mix(size_t count, const mu_ibl_slopes *parts, const double *shares) {

@@ -5,7 +5,7 @@
  *   features, left_out   names from features.h; what each left-out one would have brought
  *   materials            of each: plan, sampler and why, bytes of closure, tables, textures and the whole, lobes, and what it left out
  *   meshes               of each: vertices, triangles, whether tangents were made and a mesh at rest read
- *   lights               bytes of the sampling table and the image
+ *   lights               bytes of the light filtered in advance, the sampling table and the image
  *   plugins, libraries   files opened by name; shared objects in the process
  */
 #include "core/render/explain.h"
@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "core/render/features.h"
+#include "core/render/filtered.h"
 #include "core/render/varying.h"
 
 /* "a, b" as ["a", "b"]. */
@@ -90,8 +91,9 @@ _Bool mu_explain(const mu_scene *scene, const mu_lights *lights, FILE *out, mu_e
     json_t *file = json_string(scene->file);
     if (!file) file = json_string("(its name is not UTF-8)");
     json_t *all =
-        json_pack("{s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:o, s:o}", "scene", file, "features", needed,
-                  "left_out", left_out, "materials", materials, "meshes", meshes, "lights", "table_bytes",
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I, s:I}, s:o, s:o}", "scene", file, "features", needed,
+                  "left_out", left_out, "materials", materials, "meshes", meshes, "lights", "filtered_bytes",
+                  (json_int_t)(scene->integrator.by_image ? mu_filtered_bytes(lights) : 0), "table_bytes",
                   (json_int_t)mu_lights_table_bytes(lights), "image_bytes",
                   (json_int_t)mu_lights_image_bytes(lights), "plugins", plugins, "libraries", libraries);
     if (!all) return mu_fail(error, "not enough memory for --explain");

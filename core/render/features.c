@@ -76,6 +76,7 @@ static uint32_t of_object(const mu_scene *scene, uint32_t index) {
 uint32_t mu_features_of(const mu_scene *scene) {
     uint32_t bits = scene->camera.kind == MU_ORTHOGRAPHIC ? MU_FEATURE_ORTHOGRAPHIC : 0;
     if (scene->integrator.roulette < scene->integrator.depth) bits |= MU_FEATURE_ROULETTE;
+    if (scene->integrator.by_image) bits |= MU_FEATURE_FILTERED_LIGHT;
     for (uint32_t i = 0; i < scene->light_count; ++i) bits |= of_light(&scene->lights[i]);
     for (uint32_t i = 0; i < scene->material_count; ++i) bits |= of_material(&scene->materials[i].material);
     for (uint32_t i = 0; i < scene->object_count; ++i) bits |= of_object(scene, i);

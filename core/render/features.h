@@ -31,6 +31,7 @@
     X(ENVIRONMENT,           "environment",           "OpenImageIO, the image and its sampling table")                 \
     X(STUDIO,                "studio",                "the studio and its sampling table")                             \
     X(CONSTANT,              "constant",              "uniform light from everywhere")                                 \
+    X(FILTERED_LIGHT,        "filtered_light",        "the light around filtered for every roughness, and tables of albedos")   \
     X(DIRECTIONAL_LIGHTS,    "directional_lights",    "parallel light")                                                \
     X(RECTANGLE_LIGHTS,      "rectangle_lights",      "sampling of rectangles by area or solid angle")                 \
     X(GLOSSY_REFLECTION,     "glossy_reflection",     "microfacet reflection")                                         \

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* integrator.c: what renders ask of the path tracer: its scratch, and rows of samples. */
+/* integrator.c: what renders ask: scratch, and rows of samples, by paths or by a filtered environment. */
+#include "core/render/image_light.h"
 #include "core/render/path.h"
 
 size_t mu_integrator_scratch(const mu_scene *scene) {
@@ -14,6 +15,10 @@ size_t mu_integrator_scratch(const mu_scene *scene) {
 
 void mu_integrator_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
                        uint32_t sample, void *scratch, mu_radiance *out) {
+    if (tracer->image_light) {
+        mu_image_light_row(tracer, seed, x, y, count, sample, out);
+        return;
+    }
     const mu_path_options options = {.strategy =
                                          tracer->scene->integrator.bsdf_only ? MU_BSDF_ONLY : MU_BOTH};
     mu_path_row(tracer, &options, seed, x, y, count, sample, scratch, out);

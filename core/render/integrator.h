@@ -19,6 +19,7 @@ typedef struct mu_tracer { /* borrowed, read-only, shared by threads */
     const mu_lights *lights;
     _Bool footprints; /* some material asks for them */
     uint32_t samples; /* per pixel, as planned: what one of them stands for; 0: 1 */
+    const struct mu_image_light *image_light; /* image_light.h; NULL: by paths */
 } mu_tracer;
 
 typedef struct mu_radiance {

@@ -137,6 +137,12 @@ size_t mu_lights_image_bytes(const mu_lights *lights) {
     return 3 * sizeof(float) * (size_t)lights->sky.width * (size_t)lights->sky.height;
 }
 
+uint32_t mu_lights_rows(const mu_lights *lights) {
+    if (lights->around == MU_NO_INDEX || lights->lights[lights->around].kind == MU_CONSTANT) return 0;
+    /* the studio's narrowest edges are 0.04 wide: a dozen pixels */
+    return lights->sky.width ? (uint32_t)lights->sky.height : 2 * MU_STUDIO_HEIGHT;
+}
+
 void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out) {
     *out = (mu_light_sample){.direction = {0, 0, 1}, .distance = INFINITY};
     if (!lights->choice) return;

@@ -30,6 +30,8 @@ _Bool mu_lights_met(const mu_lights *lights);
 /* What was built: the sampling table of the environment or studio, and the environment's pixels. */
 size_t mu_lights_table_bytes(const mu_lights *lights);
 size_t mu_lights_image_bytes(const mu_lights *lights);
+/* Rows of an image that would show the light around: the environment's own; 0 where it is the same everywhere. */
+uint32_t mu_lights_rows(const mu_lights *lights);
 /* [any] One light sample as seen from p. u: three uniforms; u[2] chooses the light. */
 void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_light_sample *out);
 /* [any] Radiance arriving from infinity along `direction` (unit, away from the scene), and the pdf with which

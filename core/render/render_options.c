@@ -10,12 +10,15 @@
 
 #include "core/render/output.h"
 #include "core/render/render.h"
+#include "core/render/scene.h"
 #include "core/render/sequence.h"
 
-enum { OUTPUT, SPP, TIME, NOISE, THREADS, SEED, SIZE, FRAME, POSE_TIME, RESUME, PNG, EXPLAIN, PROGRESS, QUIET };
+enum { OUTPUT, INTEGRATOR, READS, SPP, TIME, NOISE, THREADS, SEED, SIZE, FRAME, POSE_TIME, RESUME, PNG, EXPLAIN, PROGRESS, QUIET };
 
 static const mu_option option_list[] = {
     {"o", "OUT.exr", "the image, written when it is complete and whole"},
+    {"integrator", "path|split|bent-normal|major-axis", "how light is found (default: the scene's, or path)"},
+    {"reads", "N", "of the filtered environment, along the major axis, 1 to 64 (default: the scene's, or 16)"},
     {"spp", "N", "samples per pixel (default: the scene's)"},
     {"time", "S", "stop before S seconds have passed; at least one sample per pixel is taken"},
     {"noise", "E", "stop when the mean relative standard error of the pixels is E or less"},
@@ -40,6 +43,10 @@ const mu_usage mu_render_usage = {
     "--time and --noise without --spp are not limited by the scene's samples. Whole passes are made, so "
     "every\n"
     "pixel of a finished image has the same number of samples.\n"
+    "\n"
+    "--integrator other than path lights microsurfaces that reflect by reads of the light around the scene, filtered in\n"
+    "advance for every roughness: one read along the mirrored view (split), one at a bent normal, or --reads along\n"
+    "the major axis of the lobe. There are no shadows, and light is reflected once.\n"
     "\n"
     "--explain prints one JSON object: \"features\" that the scene needs, \"left_out\" (each other feature "
     "and "
@@ -122,6 +129,10 @@ static _Bool take(mu_render_options *options, int met, const mu_options *given) 
     case PNG:
         options->png = given->value;
         return 1;
+    case INTEGRATOR:
+        return mu_options_choice(given, mu_integrators, &options->integrator);
+    case READS:
+        return mu_options_unsigned(given, 1, MU_IBL_READS_MOST, &options->reads);
     case SPP:
         return mu_options_unsigned(given, 1, MU_MOST_SAMPLES, &options->samples);
     case TIME:
@@ -166,7 +177,7 @@ _Bool mu_render_options_read(mu_render_options *options, int argc, char **argv, 
     const mu_usage *usage = &mu_render_usage;
     mu_options given = mu_options_begin(usage, argc, argv);
     int met;
-    *options = (mu_render_options){.threads = mu_processors(), .frame = MU_NO_FRAME, .pose_time = -1};
+    *options = (mu_render_options){.threads = mu_processors(), .frame = MU_NO_FRAME, .pose_time = -1, .integrator = -1};
     *exit = MU_EXIT_REFUSED;
     while ((met = mu_options_next(&given)) != MU_OPTIONS_END) {
         if (met < 0 && met != MU_OPTIONS_OPERAND) {

@@ -12,7 +12,8 @@ typedef struct mu_render_options {
     double seconds, noise;            /* 0: not given */
     uint32_t threads;
     uint32_t width, height; /* 0: not given */
-    uint64_t seed;
+    uint64_t seed, reads;             /* reads 0: not given */
+    int integrator;                   /* of mu_integrators; -1: not given */
     long long frame;                  /* MU_NO_FRAME: not given */
     double pose_time;                 /* -1: not given */
     _Bool seed_given, resume, explain, quiet;

@@ -11,6 +11,7 @@
 
 #include <stdint.h>
 
+#include "core/ibl/reads.h"
 #include "core/render/material.h"
 #include "core/render/vector.h"
 
@@ -36,6 +37,9 @@ typedef struct mu_film_settings {
 } mu_film_settings;
 
 typedef struct mu_integrator_settings {
+    _Bool by_image;             /* lit by `technique` (image_light.h); else by paths */
+    mu_ibl_technique technique; /* read if by_image */
+    uint32_t reads;             /* of the filtered environment, of techniques that have a choice */
     uint32_t depth;    /* longest path: number of scattering events; 1 = direct light only */
     uint32_t roulette; /* Russian roulette from this many events on */
     uint32_t samples;  /* per pixel, unless the command line says otherwise */
@@ -44,6 +48,10 @@ typedef struct mu_integrator_settings {
     uint32_t light_cells; /* a light sample is chosen among the square of this many candidates; 0 is 1 */
     uint64_t seed;
 } mu_integrator_settings;
+
+/* Their names, NULL-terminated, and the one of an index chosen. */
+extern const char *const mu_integrators[];
+void mu_integrator_choose(mu_integrator_settings *integrator, size_t index);
 
 enum { MU_ATTRIBUTES = 16 };
 

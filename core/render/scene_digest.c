@@ -57,6 +57,8 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
             digest = add_file(digest, scene->lights[i].image);
     for (uint32_t i = 0; i < scene->material_count; ++i)
         digest = mix(digest, scene->materials[i].material.digest);
+    digest = mix(digest, scene->integrator.by_image ? 1u + (uint64_t)scene->integrator.technique : 0);
+    digest = mix(digest, scene->integrator.reads);
     const char *plugin;
     for (size_t i = 0; (plugin = mu_plugins_opened(scene->plugins, i)); ++i)
         digest = add_file(digest, plugin);

@@ -84,14 +84,12 @@ void mu_shading_jacobian(const mu_material *material, const mu_hit *hit, const m
     for (int i = 0; i < 4; i++) m[i] = t[i];
 }
 
-void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
-                      const mu_beam *beam, void *closure) {
+void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo, const mu_beam *beam) {
     const mu_material *material = &scene->materials[hit->material].material;
     shading->hit = hit;
     shading->frame = hit->frame;
     shading->ng = hit->ng;
     shading->type = material->type;
-    shading->closure = closure;
     _Bool front = mu_dot(wo, hit->ng) > 0, turned = 0;
     /* what transmits has an inside: turned over, light would enter the glass where it leaves it */
     const _Bool opaque = !(material->plan.lobes & TRANSMISSION);
@@ -128,14 +126,22 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
         if (beam) mu_footprint_at(hit, mu_scale(wo, -1), beam, footprint);
         slots = shading->slots;
     }
-    const float direction[3] = {local.x, local.y, local.z};
-    const musurf_map *map = material->varying ? material->varying->map : NULL;
-    const musurf_material *compiled = material->compiled;
+    shading->wo[0] = local.x, shading->wo[1] = local.y, shading->wo[2] = local.z;
+    shading->pushed = slots;
+    shading->map = material->varying ? material->varying->map : NULL;
+    shading->compiled = material->compiled;
     if (material->blend) {
         float footprint[6];
         footprint_of(hit, wo, beam, footprint);
-        compiled = mu_blend_at(material->blend, footprint);
+        shading->compiled = mu_blend_at(material->blend, footprint);
     }
-    shading->lobes = map ? map->setup(compiled, direction, m, slots, 0, closure)
-                         : material->type->setup(compiled, direction, slots, 0, closure);
+}
+
+void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
+                      const mu_beam *beam, void *closure) {
+    mu_shading_place(shading, scene, hit, wo, beam);
+    shading->closure = closure;
+    shading->lobes = shading->map ? shading->map->setup(shading->compiled, shading->wo, shading->slots + MU_SLOT_TRANSFORM,
+                                                        shading->pushed, 0, closure)
+                                  : shading->type->setup(shading->compiled, shading->wo, shading->pushed, 0, closure);
 }

@@ -14,12 +14,17 @@
 #define MU_SHADING_H
 
 #include "core/render/footprint.h"
+#include "plugin/musurf_map.h"
 
 typedef struct mu_shading {
     const mu_hit *hit;
     mu_frame frame; /* the material's: world from local */
     mu_vec3 ng;     /* turned over with the frame */
+    float wo[3];    /* in that frame */
     const musurf_material_type *type;
+    const musurf_material *compiled;
+    const musurf_map *map; /* of a material whose values come down to an M, which is in `slots`; else NULL */
+    const float *pushed;   /* `slots`, or NULL: the material needs none */
     void *closure;
     uint32_t lobes; /* that can be non-zero; 0: black from here */
     float slots
@@ -30,6 +35,9 @@ typedef struct mu_shading {
  * at once (footprint.h); NULL: from afar. */
 void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
                       const mu_beam *beam, void *closure);
+
+/* The same without the closure: `closure` and `lobes` are not set. Not to be moved. */
+void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo, const mu_beam *beam);
 
 /* What comes of the material's constant `transform` where M varies: first that, then the tension T of the mesh, then the
  * Jacobian of the map: M = P J P^-1 T transform, P = [dpdu dpdv] in the frame (t, b) of the deformed surface. At rest P is

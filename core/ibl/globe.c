@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* globe.c: see globe.h. Rows are along y, columns along x of the square. In float; compiled once. */
+#include "core/ibl/globe.h"
+
+#include "core/bsdf/real.h"
+
+#if MU_REAL_BITS == 24
+
+static size_t side_of(size_t side, size_t least, size_t level) {
+    return side >> level > least ? side >> level : least;
+}
+
+size_t mu_ibl_globe_floats(size_t side, size_t least, size_t levels) {
+    size_t sum = 0;
+    for (size_t l = 0; l < levels; l++) {
+        const size_t whole = side_of(side, least, l) + 2;
+        sum += 4 * whole * whole;
+    }
+    return sum;
+}
+
+void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t side, size_t least, size_t levels, float *memory) {
+    globe->levels = levels;
+    for (size_t l = 0; l < levels; l++) {
+        const size_t own = side_of(side, least, l);
+        globe->level[l] = (mu_ibl_square){own, memory};
+        memory += 4 * (own + 2) * (own + 2);
+    }
+}
+
+/* On the octahedron |x| + |y| + |z| = 1. */
+static void unfold(float u, float v, float p[3]) {
+    const float x = 2 * u - 1, y = 2 * v - 1, z = 1 - fabs(x) - fabs(y);
+    p[0] = z >= 0 ? x : copysign(1 - fabs(y), x);
+    p[1] = z >= 0 ? y : copysign(1 - fabs(x), y);
+    p[2] = z;
+}
+
+void mu_ibl_globe_direction(float x, float y, float direction[3]) {
+    float p[3];
+    unfold(x, y, p);
+    const float length = sqrt(dot(p, p));
+    for (int k = 0; k < 3; k++) direction[k] = p[k] / length;
+}
+
+static void copy(const mu_ibl_square *s, size_t to_row, size_t to_column, size_t row, size_t column) {
+    const size_t whole = s->side + 2;
+    for (size_t k = 0; k < 4; k++)
+        s->texels[4 * (to_row * whole + to_column) + k] = s->texels[4 * (row * whole + column) + k];
+}
+
+/* Across an edge lies the same edge, mirrored at its middle; across a corner the corner opposite. Counted with the border. */
+void mu_ibl_globe_border(mu_ibl_square *s) {
+    const size_t n = s->side, last = n + 1;
+    for (size_t i = 1; i <= n; i++) {
+        copy(s, 0, i, 1, last - i), copy(s, last, i, n, last - i);
+        copy(s, i, 0, last - i, 1), copy(s, i, last, last - i, n);
+    }
+    copy(s, 0, 0, n, n), copy(s, 0, last, n, 1), copy(s, last, 0, 1, n), copy(s, last, last, 1, 1);
+}
+
+/* Solid angle of a texel, up to a factor: 1 / |p|³, for the octahedron's faces are equally far. */
+static float weight_at(size_t side, size_t row, size_t column) {
+    float p[3];
+    unfold(((float)column + 0.5f) / (float)side, ((float)row + 0.5f) / (float)side, p);
+    const float square = dot(p, p);
+    return 1 / (square * sqrt(square));
+}
+
+void mu_ibl_globe_halve(const mu_ibl_square *from, mu_ibl_square *to) {
+    for (size_t row = 0; row < to->side; row++)
+        for (size_t column = 0; column < to->side; column++) {
+            float sum[4] = {0, 0, 0, 0}, all = 0;
+            for (size_t k = 0; k < 4; k++) {
+                const size_t y = 2 * row + k / 2, x = 2 * column + k % 2;
+                const float weight = weight_at(from->side, y, x), *texel = mu_ibl_texel(from, y, x);
+                for (size_t c = 0; c < 4; c++) sum[c] += weight * texel[c];
+                all += weight;
+            }
+            for (size_t c = 0; c < 4; c++) mu_ibl_texel(to, row, column)[c] = sum[c] / all;
+        }
+    mu_ibl_globe_border(to);
+}
+
+static inline void bilinear(const mu_ibl_square *s, float u, float v, float weight, float rgb[4]) {
+    const float x = u * (float)s->side + 0.5f, y = v * (float)s->side + 0.5f; /* counted with the border */
+    const int column = (int)x, row = (int)y, whole = (int)s->side + 2;
+    const float right = x - (float)column, down = y - (float)row;
+    const float *a = s->texels + 4 * (row * whole + column), *b = a + 4 * whole;
+    const float w00 = weight * (1 - down) * (1 - right), w01 = weight * (1 - down) * right,
+                w10 = weight * down * (1 - right), w11 = weight * down * right;
+    for (int k = 0; k < 4; k++) rgb[k] += w00 * a[k] + w01 * a[4 + k] + w10 * b[k] + w11 * b[4 + k];
+}
+
+void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, float weight, float rgb[4]) {
+    const float scale = 0.5f / (fabs(w[0]) + fabs(w[1]) + fabs(w[2]));
+    const float x = w[0] * scale, y = w[1] * scale;
+    const float u = 0.5f + (w[2] >= 0 ? x : copysign(0.5f - fabs(y), x)),
+                v = 0.5f + (w[2] >= 0 ? y : copysign(0.5f - fabs(x), y));
+    const size_t low = (size_t)level;
+    const float share = low + 1 < g->levels ? level - (float)low : 0;
+    bilinear(&g->level[low], u, v, weight * (1 - share), rgb);
+    if (share > 0) bilinear(&g->level[low + 1], u, v, weight * share, rgb);
+}
+
+void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl_tap *tap, size_t row,
+                             mu_ibl_square *to) {
+    for (size_t column = 0; column < to->side; column++) {
+        float n[3], sum[4] = {0, 0, 0, 0};
+        mu_ibl_globe_direction(((float)column + 0.5f) / (float)to->side, ((float)row + 0.5f) / (float)to->side,
+                               n);
+        /* down the meridian and east; at the poles any */
+        const float flat = hypot(n[0], n[1]);
+        const float east[2] = {flat > 0 ? -n[1] / flat : 0, flat > 0 ? n[0] / flat : 1};
+        const float down[3] = {n[2] * east[1], -n[2] * east[0], -flat};
+        for (size_t i = 0; i < taps; i++) {
+            const float *l = tap[i].local;
+            const float w[3] = {l[0] * down[0] + l[1] * east[0] + l[2] * n[0],
+                                l[0] * down[1] + l[1] * east[1] + l[2] * n[1], l[0] * down[2] + l[2] * n[2]};
+            mu_ibl_globe_add(from, w, tap[i].level, tap[i].weight, sum);
+        }
+        for (int k = 0; k < 4; k++) mu_ibl_texel(to, row, column)[k] = sum[k];
+    }
+}
+
+#endif

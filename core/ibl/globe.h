@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * globe.h: radiance from all directions as a chain of squares, each the sphere by way of an octahedron. In float.
+ *
+ * A direction w goes to w / (|x| + |y| + |z|), whose x, y fill a square: its inner half from above, what is folded over
+ * the diagonals from below (Praun and Hoppe 2003, "Spherical parametrization and remeshing"). A look-up takes neither
+ * sines nor arctangents, and no pole crowds. Squares have a border of one texel that repeats what lies across the edge, so
+ * that bilinear reads need to know nothing of it. Texels are four floats, the last unused.
+ */
+#ifndef MU_IBL_GLOBE_H
+#define MU_IBL_GLOBE_H
+
+#include "core/ibl/prefilter.h"
+
+typedef struct mu_ibl_square {
+    size_t side;
+    float *texels; /* (side + 2)² */
+} mu_ibl_square;
+
+typedef struct mu_ibl_globe {
+    size_t levels;
+    mu_ibl_square level[MU_IBL_LEVELS_MOST];
+} mu_ibl_globe;
+
+/* Squares of sides halved from a power of two until they reach `least` and then as large, `levels` in all: floats that they take,
+ * and laid out in such memory (aligned to 16). */
+size_t mu_ibl_globe_floats(size_t side, size_t least, size_t levels);
+void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t side, size_t least, size_t levels, float *memory);
+
+/* The texel in a row and column; the direction of place (x, y) in [0, 1]². */
+static inline float *mu_ibl_texel(const mu_ibl_square *square, size_t row, size_t column) {
+    return square->texels + 4 * ((row + 1) * (square->side + 2) + column + 1);
+}
+void mu_ibl_globe_direction(float x, float y, float direction[3]);
+
+/* Once all texels of a square are set. */
+void mu_ibl_globe_border(mu_ibl_square *square);
+/* `to` becomes the mean of `from`, of twice its side, by solid angle. */
+void mu_ibl_globe_halve(const mu_ibl_square *from, mu_ibl_square *to);
+/* A row of `to` becomes what the taps (prefilter.h) see in `from`. */
+void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl_tap *tap, size_t row,
+                             mu_ibl_square *to);
+
+/* Trilinear: adds `weight` times the radiance from a direction, not necessarily a unit vector, to rgb. `level` from 0 to
+ * levels - 1. */
+void mu_ibl_globe_add(const mu_ibl_globe *globe, const float direction[3], float level, float weight,
+                      float rgb[4]);
+
+#endif

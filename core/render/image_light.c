@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* image_light.c: see image_light.h. World space, but for what the lobe and its reads are in: the frame of the hit. */
+#include "core/render/image_light.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/ibl/reads.h"
+#include "core/render/albedo_table.h"
+#include "core/render/filtered.h"
+#include "core/render/lobes.h"
+#include "core/render/path.h"
+#include "core/render/surface_rows.h"
+
+typedef struct lit_material {
+    mu_lobe_source source;
+    mu_albedo_table albedo;
+} lit_material;
+
+struct mu_image_light {
+    mu_ibl_technique technique;
+    mu_ibl_settings_f settings;
+    mu_ibl_globe globe;
+    float *memory; /* of the globe */
+    lit_material *materials;
+    uint32_t count;
+};
+
+/* Where a ray arrived; false: black from here. */
+static _Bool arrive(const mu_tracer *tracer, const mu_image_light *light, const mu_ray *ray, const mu_hit *hit,
+                    mu_shading *shading, mu_ibl_lobe_f *lobe) {
+    mu_beam beam;
+    if (tracer->footprints) {
+        beam = mu_beam_of_pixel(&tracer->scene->camera, &tracer->scene->film, hit->p);
+        if (tracer->samples) beam.share = 1 / sqrtf((float)tracer->samples);
+    }
+    mu_shading_place(shading, tracer->scene, hit, mu_scale(ray->direction, -1), tracer->footprints ? &beam : NULL);
+    return shading->wo[2] > 0 && mu_lobe_at(&light->materials[hit->material].source, shading, lobe);
+}
+
+/* Up to MU_PACKET camera rays; `centres`: not spread by the film's filter. */
+static uint32_t look(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample,
+                     _Bool centres, mu_ray *rays, mu_hit *hits) {
+    for (uint32_t i = 0; i < count; i++) {
+        mu_random random = mu_random_start(seed, x + i, y, sample);
+        float u[2] = {0.5f, 0.5f};
+        if (!centres) mu_random_pair(&random, u);
+        rays[i] = mu_camera_ray(&tracer->scene->camera, &tracer->scene->film, x + i, y, u);
+    }
+    return mu_geometry_intersect_packet(tracer->geometry, rays, (1u << count) - 1, hits);
+}
+
+void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample,
+                        mu_radiance *out) {
+    const mu_image_light *light = tracer->image_light;
+    mu_ray rays[MU_PACKET] = {{.near = 0}};
+    mu_hit hits[MU_PACKET];
+    const uint32_t met = look(tracer, seed, x, y, count, sample, 0, rays, hits);
+    const float last = (float)(light->globe.levels - 1);
+    for (uint32_t i = 0; i < count; i++) {
+        mu_shading shading;
+        mu_ibl_lobe_f lobe;
+        mu_ibl_read reads[MU_IBL_READS_MOST];
+        float pdf, sum[4] = {0, 0, 0, 0};
+        out[i] = (mu_radiance){.rays = 1, .hit = met >> i & 1};
+        if (!out[i].hit) {
+            mu_lights_escaped(tracer->lights, rays[i].direction, out[i].rgb, &pdf);
+            continue;
+        }
+        const _Bool bright = arrive(tracer, light, &rays[i], &hits[i], &shading, &lobe);
+        memcpy(out[i].normal, &shading.frame.n, sizeof out[i].normal);
+        if (!bright) continue;
+        mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
+        const size_t n = mu_ibl_reads(light->technique, &lobe, shading.wo, &light->settings, reads);
+        for (size_t k = 0; k < n; k++) {
+            const float *d = reads[k].direction;
+            const mu_vec3 world = mu_to_world(&shading.frame, mu_v3(d[0], d[1], d[2]));
+            mu_ibl_globe_add(&light->globe, (const float[3]){world.x, world.y, world.z}, reads[k].roughness * last,
+                             reads[k].weight, sum);
+        }
+        for (int c = 0; c < 3; c++) out[i].rgb[c] = out[i].albedo[c] * sum[c];
+        if (!(isfinite(sum[0] + sum[1] + sum[2]) && sum[0] >= 0 && sum[1] >= 0 && sum[2] >= 0)) {
+            out[i].refused = 1;
+            out[i].rgb[0] = out[i].rgb[1] = out[i].rgb[2] = 0;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ preparation */
+
+/* The least and the largest sigmas that the middles of a row's pixels meet, of each material. */
+typedef struct survey {
+    const mu_tracer *tracer;
+    const mu_image_light *light;
+    mu_ibl_lobe_f *low, *high; /* rows of `count` */
+} survey;
+
+static void widen(mu_ibl_lobe_f *low, mu_ibl_lobe_f *high, const mu_ibl_lobe_f *a, const mu_ibl_lobe_f *b) {
+    for (int k = 0; k < 2; k++) {
+        low->sigma[k] = fminf(low->sigma[k], a->sigma[k]);
+        high->sigma[k] = fmaxf(high->sigma[k], b->sigma[k]);
+    }
+}
+
+/* [any] */
+static void survey_row(void *context, uint32_t y) {
+    const survey *s = context;
+    const uint32_t width = s->tracer->scene->film.width;
+    mu_ibl_lobe_f *low = s->low + (size_t)y * s->light->count, *high = s->high + (size_t)y * s->light->count;
+    for (uint32_t m = 0; m < s->light->count; m++)
+        low[m] = (mu_ibl_lobe_f){{FLT_MAX, FLT_MAX}, {1, 0}}, high[m] = (mu_ibl_lobe_f){{0, 0}, {1, 0}};
+    for (uint32_t x = 0; x < width; x += MU_PACKET) {
+        const uint32_t count = width - x < MU_PACKET ? width - x : MU_PACKET;
+        mu_ray rays[MU_PACKET] = {{.near = 0}};
+        mu_hit hits[MU_PACKET];
+        const uint32_t met = look(s->tracer, 0, x, y, count, 0, 1, rays, hits);
+        for (uint32_t i = 0; i < count; i++) {
+            mu_shading shading;
+            mu_ibl_lobe_f lobe;
+            const uint32_t m = hits[i].material;
+            if (met >> i & 1 && arrive(s->tracer, s->light, &rays[i], &hits[i], &shading, &lobe) && lobe.sigma[1] > 0)
+                widen(&low[m], &high[m], &lobe, &lobe);
+        }
+    }
+}
+
+/* Ranges of all materials into low[0 ... count - 1] and high. Only where some M varies is there anything to ask. */
+static _Bool survey_picture(survey *s, uint32_t threads, mu_error *error) {
+    const uint32_t rows = s->tracer->scene->film.height, count = s->light->count;
+    _Bool varies = 0;
+    for (uint32_t m = 0; m < count; m++) varies = varies || s->light->materials[m].source.map;
+    s->low = calloc((size_t)rows * count + 1, sizeof *s->low);
+    s->high = calloc((size_t)rows * count + 1, sizeof *s->high);
+    if (!s->low || !s->high) return mu_fail(error, "not enough memory");
+    if (varies) mu_rows(rows, threads, survey_row, s);
+    for (uint32_t m = 0; m < count; m++) {
+        const mu_lobe_source *source = &s->light->materials[m].source;
+        for (uint32_t y = 1; varies && y < rows; y++)
+            widen(&s->low[m], &s->high[m], &s->low[(size_t)y * count + m], &s->high[(size_t)y * count + m]);
+        if (!source->map || !(s->low[m].sigma[1] <= s->high[m].sigma[1])) s->low[m] = s->high[m] = source->lobe;
+    }
+    return 1;
+}
+
+static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint32_t threads, mu_error *error) {
+    const mu_scene *scene = tracer->scene;
+    light->count = scene->material_count;
+    light->materials = calloc((size_t)light->count + 1, sizeof *light->materials);
+    if (!light->materials) return mu_fail(error, "not enough memory");
+    for (uint32_t m = 0; m < light->count; m++)
+        if (!mu_lobe_source_make(&light->materials[m].source, &scene->materials[m], error)) return 0;
+    survey s = {.tracer = tracer, .light = light};
+    _Bool good = survey_picture(&s, threads, error);
+    for (uint32_t m = 0; good && m < light->count; m++) {
+        lit_material *own = &light->materials[m];
+        good = mu_albedo_table_make(&own->albedo, &scene->materials[m].material, own->source.map, &own->source.moments,
+                                    &s.low[m], &s.high[m], threads, error);
+    }
+    free(s.low);
+    free(s.high);
+    return good;
+}
+
+static _Bool lights_around(const mu_scene *scene, mu_error *error) {
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        if (scene->lights[i].kind == MU_DIRECTIONAL || scene->lights[i].kind == MU_RECTANGLE_LIGHT)
+            return mu_fail(error, "light %u is no light around the scene: only --integrator path renders it", i);
+    return 1;
+}
+
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error) {
+    const mu_integrator_settings *settings = &tracer->scene->integrator;
+    mu_image_light *light = calloc(1, sizeof *light);
+    if (!light) {
+        mu_fail(error, "not enough memory");
+        return NULL;
+    }
+    light->technique = settings->technique;
+    light->settings = mu_ibl_settings_default_f();
+    light->settings.samples = settings->reads;
+    if (lights_around(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
+        (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error)))
+        return light;
+    mu_image_light_free(light);
+    return NULL;
+}
+
+void mu_image_light_free(mu_image_light *light) {
+    if (!light) return;
+    for (uint32_t m = 0; light->materials && m < light->count; m++) mu_albedo_table_free(&light->materials[m].albedo);
+    free(light->materials);
+    free(light->memory);
+    free(light);
+}

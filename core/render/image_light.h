@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * image_light.h: pictures lit by an environment that was filtered in advance: no random directions, no shadows, one event.
+ *
+ * Radiance at a first hit is the directional albedo of its material times the reads of a technique (core/ibl/reads.h). The
+ * lobe comes from the plugin: the moments of its slopes (musurf_slopes.h) under the M of the hit. All that is needed is made
+ * once, before the first sample: the filtered environment, and of each material a table of albedos over what the camera's
+ * rays meet.
+ */
+#ifndef MU_IMAGE_LIGHT_H
+#define MU_IMAGE_LIGHT_H
+
+#include "core/render/integrator.h"
+
+typedef struct mu_image_light mu_image_light;
+
+/* For a tracer whose scene has a technique. NULL on failure: a light that is nowhere around, or a material whose lobe is not
+ * known, refracts or is blended. */
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error);
+void mu_image_light_free(mu_image_light *image_light);
+
+/* [any] As mu_integrator_row, of tracer->image_light. */
+void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
+                        uint32_t sample, mu_radiance *out);
+
+#endif

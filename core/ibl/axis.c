@@ -30,7 +30,7 @@ static void turn_back(const lobe *l, real x, real y, real out[2]) {
 
 /* The micronormals of a slope of the lobe's frame and of its opposite, and half the way from one to the other. */
 static void both_normals(const lobe *l, real x, real y, real out[2][3]) {
-    const real length = hypot(R(1), hypot(x, y));
+    const real length = length2(R(1), length2(x, y));
     turn_back(l, -x / length, -y / length, out[0]);
     out[1][0] = -out[0][0], out[1][1] = -out[0][1];
     out[0][2] = out[1][2] = 1 / length;
@@ -52,17 +52,18 @@ static void place_samples(const real cut[2], axis *out) {
     out->reach[1] = out->zeta * sin(half);
 }
 
-void MU(mu_ibl_axis_make)(const lobe *l, const real wo[3], const settings *s, axis *out) {
+/* `whole`: with the points and their parameters. */
+static inline void make(const lobe *l, const real wo[3], const settings *s, int whole, axis *out) {
     const real r[2] = {smaller(s->k * l->sigma[0], STEEPEST), smaller(s->k * l->sigma[1], STEEPEST)};
     const real o[3] = {l->turn[0] * wo[0] + l->turn[1] * wo[1], l->turn[0] * wo[1] - l->turn[1] * wo[0],
                        larger(wo[2], 0)};
     extremum nearest, farthest;
     extrema_of(r, o, &nearest, &farthest);
-    out->t[0] = atan2(nearest.sine, nearest.cosine);
-    out->t[1] = atan2(farthest.sine, farthest.cosine);
-    both_normals(l, r[0] * nearest.cosine, r[1] * nearest.sine, out->near);
-    const real x = r[0] * farthest.cosine, y = r[1] * farthest.sine, steep = hypot(x, y);
-    both_normals(l, x, y, out->far);
+    const real x = r[0] * farthest.cosine, y = r[1] * farthest.sine, steep = length2(x, y);
+    if (whole) {
+        both_normals(l, r[0] * nearest.cosine, r[1] * nearest.sine, out->near);
+        both_normals(l, x, y, out->far);
+    }
 
     /* the axis' plane: the first end's side, to which the micronormal leans against its slope */
     const real side[2] = {steep > 0 ? -x / steep : -farthest.cosine, steep > 0 ? -y / steep : -farthest.sine};
@@ -71,20 +72,33 @@ void MU(mu_ibl_axis_make)(const lobe *l, const real wo[3], const settings *s, ax
     const clamped c = clamp_axis(forward, o[2], steep);
     real lean[2], rise[2];
     for (int end = 0; end < 2; end++) {
-        const real length = hypot(R(1), c.cut[end]);
+        const real length = length2(R(1), c.cut[end]);
         out->tau[end] = c.tau[end], lean[end] = c.cut[end] / length, rise[end] = 1 / length;
         for (int i = 0; i < 2; i++) out->far_clamped[end][i] = out->along[i] * lean[end];
         out->far_clamped[end][2] = rise[end];
     }
 
-    out->delta = shift_of(s->shift, &c, out->t[0] - out->t[1]);
+    out->delta = 0;
+    if (whole || c.skew != 0) {
+        out->t[0] = atan2(nearest.sine, nearest.cosine);
+        out->t[1] = atan2(farthest.sine, farthest.cosine);
+        out->delta = shift_of(s->shift, &c, out->t[0] - out->t[1]);
+    }
     out->width = shifted_width(r, o, &nearest, out->delta);
     /* both reflect within a plane that holds but a part of the view: twice that times the sine of the angle between */
-    out->length = 2 * hypot(forward, o[2]) * (lean[0] * rise[1] - rise[0] * lean[1]);
+    out->length = 2 * length2(forward, o[2]) * (lean[0] * rise[1] - rise[0] * lean[1]);
     out->zeta = out->length > 0 ? larger(1 - out->width / out->length, -STEEPEST) : 0;
     out->radius = smaller(larger(out->width / (2 * s->k), s->beta / (2 * (real)s->samples) * out->length),
                           STEEPEST); /* Eq. (10) */
     place_samples(c.cut, out);
+}
+
+void MU(mu_ibl_axis_make)(const lobe *l, const real wo[3], const settings *s, axis *out) {
+    make(l, wo, s, 1, out);
+}
+
+void MU(mu_ibl_axis_make_for_samples)(const lobe *l, const real wo[3], const settings *s, axis *out) {
+    make(l, wo, s, 0, out);
 }
 
 void MU(mu_ibl_axis_batch)(size_t count, const lobe *lobes, size_t lobe_stride, const real *wo,
@@ -95,7 +109,7 @@ void MU(mu_ibl_axis_batch)(size_t count, const lobe *lobes, size_t lobe_stride, 
 
 void MU(mu_ibl_axis_sample)(const axis *a, size_t samples, size_t j, real micronormal[3]) {
     const real step = samples > 1 ? 1 - 2 * ((real)j / (real)(samples - 1)) : 0;
-    const real p = a->reach[0], q = step * a->reach[1], length = hypot(p, q);
+    const real p = a->reach[0], q = step * a->reach[1], length = length2(p, q);
     const real lean = (p * a->middle[0] + q * a->middle[1]) / length;
     micronormal[0] = lean * a->along[0];
     micronormal[1] = lean * a->along[1];

@@ -13,7 +13,7 @@
 #ifndef MU_IBL_CLAMP_H
 #define MU_IBL_CLAMP_H
 
-#include "core/bsdf/real.h"
+#include "core/ibl/length.h"
 
 typedef struct clamped {
     real tau[2]; /* not clamped */
@@ -23,7 +23,7 @@ typedef struct clamped {
 
 /* Of an axis with T between -steep and steep. */
 static inline clamped clamp_axis(real f, real z, real steep) {
-    const real length = hypot(f, z);
+    const real length = length2(f, z);
     const real far = length > 0 ? fabs(f) + length : 1, other = length > 0 ? z : 1;
     const real up[2] = {f >= 0 ? far / other : other / far, f >= 0 ? other / far : far / other}; /* |T| */
     const real share[2] = {up[0] / steep, up[1] / steep}; /* infinite, or 0/0: nothing is cut */

@@ -23,7 +23,7 @@
 #ifndef MU_IBL_EXTREMA_H
 #define MU_IBL_EXTREMA_H
 
-#include "core/bsdf/real.h"
+#include "core/ibl/length.h"
 
 typedef struct extremum {
     real cosine,
@@ -34,7 +34,7 @@ typedef struct extremum {
 /* The t of x = hx cos t, y = hy sin t, any multiple of them, with p = a x + b y. */
 static inline extremum extremum_at(real x, real y, real p, real hx, real hy) {
     const real wide = larger(hx, hy), c = x * (hy / wide), s = y * (hx / wide);
-    const real turn = c < 0 || (c == 0 && s < 0) ? -1 : 1, length = turn * hypot(c, s);
+    const real turn = c < 0 || (c == 0 && s < 0) ? -1 : 1, length = turn * length2(c, s);
     return (extremum){c / length + 0, s / length, p / length * smaller(hx, hy)}; /* -0 becomes 0 */
 }
 
@@ -44,13 +44,13 @@ static inline real small_root(real s, real u, real c, real a) {
 }
 
 static inline void extrema_of(const real r[2], const real o[3], extremum *nearest, extremum *farthest) {
-    const real hx = hypot(R(1), r[0]), hy = hypot(R(1), r[1]), apart = r[0] - r[1];
+    const real hx = length2(R(1), r[0]), hy = length2(R(1), r[1]), apart = r[0] - r[1];
     real a = o[0] * (r[0] / hx), b = o[1] * (r[1] / hy);
     real root_c = sqrt(fabs(apart) / hx / hy) * sqrt((r[0] / hx + r[1] / hx) / hy) * o[2];
     const real largest = larger(larger(fabs(a), fabs(b)), root_c);
     if (largest > 0) a /= largest, b /= largest, root_c /= largest;
     const real c = copysign(root_c * root_c, apart), difference = (a - b) * (a + b) + c, product = 2 * a * b;
-    const real s = hypot(difference, product), u = a * a + b * b;
+    const real s = length2(difference, product), u = a * a + b * b;
     if (s == 0) { /* Appendix A: t0 = pi/2, t1 = t0 + pi/2 */
         *farthest = extremum_at(1, 0, a * largest, hx, hy);
         *nearest = extremum_at(0, 1, b * largest, hx, hy);

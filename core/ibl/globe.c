@@ -83,25 +83,44 @@ void mu_ibl_globe_halve(const mu_ibl_square *from, mu_ibl_square *to) {
     mu_ibl_globe_border(to);
 }
 
-static inline void bilinear(const mu_ibl_square *s, float u, float v, float weight, float rgb[4]) {
+static inline void bilinear(const mu_ibl_square *s, float u, float v, float weight, float *restrict rgb) {
     const float x = u * (float)s->side + 0.5f, y = v * (float)s->side + 0.5f; /* counted with the border */
     const int column = (int)x, row = (int)y, whole = (int)s->side + 2;
     const float right = x - (float)column, down = y - (float)row;
-    const float *a = s->texels + 4 * (row * whole + column), *b = a + 4 * whole;
+    const float *restrict a = s->texels + 4 * (row * whole + column), *restrict b = a + 4 * whole;
     const float w00 = weight * (1 - down) * (1 - right), w01 = weight * (1 - down) * right,
                 w10 = weight * down * (1 - right), w11 = weight * down * right;
     for (int k = 0; k < 4; k++) rgb[k] += w00 * a[k] + w01 * a[4 + k] + w10 * b[k] + w11 * b[4 + k];
 }
 
-void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, float weight, float rgb[4]) {
-    const float scale = 0.5f / (fabs(w[0]) + fabs(w[1]) + fabs(w[2]));
-    const float x = w[0] * scale, y = w[1] * scale;
-    const float u = 0.5f + (w[2] >= 0 ? x : copysign(0.5f - fabs(y), x)),
-                v = 0.5f + (w[2] >= 0 ? y : copysign(0.5f - fabs(x), y));
-    const size_t low = (size_t)level;
-    const float share = low + 1 < g->levels ? level - (float)low : 0;
+/* Places in the square, 0 to 1. */
+static inline void fold(float wx, float wy, float wz, float *u, float *v) {
+    const float scale = 0.5f / (fabs(wx) + fabs(wy) + fabs(wz)), x = wx * scale, y = wy * scale;
+    const float fx = copysign(0.5f - fabs(y), x), fy = copysign(0.5f - fabs(x), y);
+    *u = 0.5f + (wz >= 0 ? x : fx);
+    *v = 0.5f + (wz >= 0 ? y : fy);
+}
+
+static inline void trilinear(const mu_ibl_globe *g, float u, float v, float level, float weight,
+                             float *restrict rgb) {
+    const int low = (int)level;
+    const float share = low + 1 < (int)g->levels ? level - (float)low : 0;
     bilinear(&g->level[low], u, v, weight * (1 - share), rgb);
     if (share > 0) bilinear(&g->level[low + 1], u, v, weight * share, rgb);
+}
+
+void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, float weight, float rgb[4]) {
+    float u, v, sum[4] = {rgb[0], rgb[1], rgb[2], rgb[3]}; /* nothing else can be meant: four at a time */
+    fold(w[0], w[1], w[2], &u, &v);
+    trilinear(g, u, v, level, weight, sum);
+    for (int k = 0; k < 4; k++) rgb[k] = sum[k];
+}
+
+void mu_ibl_globe_sum(const mu_ibl_globe *g, const mu_ibl_batch *b, float rgb[4]) {
+    float u[MU_IBL_BATCH], v[MU_IBL_BATCH], sum[4] = {rgb[0], rgb[1], rgb[2], rgb[3]};
+    for (size_t i = 0; i < b->count; i++) fold(b->x[i], b->y[i], b->z[i], &u[i], &v[i]);
+    for (size_t i = 0; i < b->count; i++) trilinear(g, u[i], v[i], b->level[i], b->weight[i], sum);
+    for (int k = 0; k < 4; k++) rgb[k] = sum[k];
 }
 
 void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl_tap *tap, size_t row,

@@ -42,9 +42,17 @@ void mu_ibl_globe_halve(const mu_ibl_square *from, mu_ibl_square *to);
 void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl_tap *tap, size_t row,
                              mu_ibl_square *to);
 
-/* Trilinear: adds `weight` times the radiance from a direction, not necessarily a unit vector, to rgb. `level` from 0 to
+/* Trilinear: adds the radiance from a direction, not necessarily a unit vector, times `weight` to rgb. `level` from 0 to
  * levels - 1. */
 void mu_ibl_globe_add(const mu_ibl_globe *globe, const float direction[3], float level, float weight,
                       float rgb[4]);
+
+/* The same of many; at most MU_IBL_BATCH of them. Where they look is worked out for several at a time. */
+enum { MU_IBL_BATCH = 64 };
+typedef struct mu_ibl_batch {
+    size_t count;
+    float x[MU_IBL_BATCH], y[MU_IBL_BATCH], z[MU_IBL_BATCH], level[MU_IBL_BATCH], weight[MU_IBL_BATCH];
+} mu_ibl_batch;
+void mu_ibl_globe_sum(const mu_ibl_globe *globe, const mu_ibl_batch *batch, float rgb[4]);
 
 #endif

@@ -44,6 +44,10 @@ MU_SUFFIX(mu_ibl_lobe) MU_SUFFIX(mu_ibl_lobe_of)(const mu_ibl_slopes *slopes);
 /* wo.z >= 0. */
 void MU_SUFFIX(mu_ibl_axis_make)(const MU_SUFFIX(mu_ibl_lobe) * lobe, const MU_REAL wo[3],
                                  const MU_SUFFIX(mu_ibl_settings) * settings, MU_SUFFIX(mu_ibl_axis) * out);
+/* The same, but t, `near` and `far` are not for use: all that samples and their radius need. */
+void MU_SUFFIX(mu_ibl_axis_make_for_samples)(const MU_SUFFIX(mu_ibl_lobe) * lobe, const MU_REAL wo[3],
+                                             const MU_SUFFIX(mu_ibl_settings) * settings,
+                                             MU_SUFFIX(mu_ibl_axis) * out);
 /* Many at once. Strides count lobes and numbers; a stride of 0 repeats the one. */
 void MU_SUFFIX(mu_ibl_axis_batch)(size_t count, const MU_SUFFIX(mu_ibl_lobe) * lobes, size_t lobe_stride,
                                   const MU_REAL *wo, size_t wo_stride,

@@ -41,18 +41,27 @@ static size_t bent_normal(const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_r
     return 1;
 }
 
+/* mu_ibl_axis_sample and a mirror, many at once: all micronormals lie in the plane of z and `along`. */
 static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_ibl_settings_f *settings,
                          mu_ibl_read *out) {
     mu_ibl_axis_f axis;
-    mu_ibl_axis_make_f(lobe, wo, settings, &axis);
-    const float roughness = smaller(sqrt(axis.radius), 1), weight = 1 / (float)settings->samples;
-    for (size_t j = 0; j < settings->samples; j++) {
-        float m[3];
-        mu_ibl_axis_sample_f(&axis, settings->samples, j, m);
-        mirror(m, wo, out[j].direction);
-        out[j].roughness = roughness, out[j].weight = weight;
+    mu_ibl_axis_make_for_samples_f(lobe, wo, settings, &axis);
+    const size_t n = settings->samples;
+    const float forward = axis.along[0] * wo[0] + axis.along[1] * wo[1];
+    const float p = axis.reach[0], last = n > 1 ? axis.reach[1] : 0, step = n > 1 ? 2 * last / (float)(n - 1) : 0;
+    float lean[MU_IBL_READS_MOST], rise[MU_IBL_READS_MOST]; /* each times twice the cosine to wo */
+    for (size_t j = 0; j < n; j++) {
+        const float q = last - (float)(int)j * step, inverse = 1 / sqrt(p * p + q * q);
+        const float x = (p * axis.middle[0] + q * axis.middle[1]) * inverse,
+                    z = (p * axis.middle[1] - q * axis.middle[0]) * inverse, twice = 2 * (x * forward + z * wo[2]);
+        lean[j] = twice * x, rise[j] = twice * z;
     }
-    return settings->samples;
+    const float roughness = smaller(sqrt(axis.radius), 1), weight = 1 / (float)n;
+    for (size_t j = 0; j < n; j++)
+        out[j] = (mu_ibl_read){{lean[j] * axis.along[0] - wo[0], lean[j] * axis.along[1] - wo[1], rise[j] - wo[2]},
+                               roughness,
+                               weight};
+    return n;
 }
 
 size_t mu_ibl_reads(mu_ibl_technique technique, const mu_ibl_lobe_f *lobe, const float wo[3],

@@ -19,11 +19,11 @@ static inline real shifted_width(const real r[2], const real o[3], const extremu
     const real s = sin(delta), c = cos(delta);
     const real g[2] = {-s * (r[0] * t->sine), s * (r[1] * t->cosine)};
     const real d[2] = {c * (r[0] * t->cosine), c * (r[1] * t->sine)};
-    const real m = hypot(R(1), hypot(g[0] + d[0], g[1] + d[1])),
-               n = hypot(R(1), hypot(g[0] - d[0], g[1] - d[1]));
+    const real m = length2(R(1), length2(g[0] + d[0], g[1] + d[1])),
+               n = length2(R(1), length2(g[0] - d[0], g[1] - d[1]));
     const real up = (g[1] / m) * (d[0] / n) - (g[0] / m) * (d[1] / n);
     const real x = d[0] / m / n * o[2] - up * o[1], y = d[1] / m / n * o[2] + up * o[0];
-    return 4 * hypot(hypot(x, y), c * t->p / m / n);
+    return 4 * length2(length2(x, y), c * t->p / m / n);
 }
 
 #endif

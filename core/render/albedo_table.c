@@ -1,24 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * albedo_table.c: nodes by an additive lattice in three dimensions (Roberts 2018); linear between them.
+ * albedo_table.c: nodes by an additive lattice (command_ibl_albedo.c); linear between them. Samplers that reject make it random:
+ * then a table of many nodes stops, at 2e7 samples in all, short of the accuracy that others have at once.
  *
  * Albedos of smooth surfaces fall off within a cosine of about alpha from the horizon, and Fresnel's with the fifth power:
  * nodes are even in the cosine's root. Between 64 of them the error is that of (1/63)² / 8 of the second derivative, 3e-4
- * of one of 10.
+ * of one of 10. Around, a sine of twice the angle whose height is 1 is met to 1e-3 between 96; albedos move by less.
  */
 #include "core/render/albedo_table.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/render/philox.h"
 #include "core/render/surface_rows.h"
 
 #define TWO_PI 6.28318530717958647692
 
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.15f
-enum { SIGMAS_MOST = 12, SAMPLES = 1024, SAMPLES_WHERE_M_VARIES = 512 };
+enum { SIGMAS_MOST = 12, BATCH = 256, LEAST_BATCHES = 4 };
+#define ENOUGH 2e-4
 /* The view of the node on the horizon. */
 #define LEAST_COSINE 1e-4
 
@@ -28,29 +31,41 @@ typedef struct work {
     const musurf_map *map;
     double root[3]; /* of the moments before M: lower triangle */
     const mu_ibl_lobe_f *lobe;
-    uint32_t samples;
+    uint32_t most; /* batches */
 } work;
 
-/* Mean weight of what is reflected. */
-static void mean_weight(const work *w, const float m[4], const float wo[3], void *closure, float rgb[3]) {
-    static const double step[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+/* Mean weight of what is reflected: batches of the lattice, each shifted at random, until their means' standard error is
+ * ENOUGH, or `most` of them are made. */
+static void mean_weight(const work *w, const float m[4], const float wo[3], uint64_t node, void *closure, float rgb[3]) {
+    static const double step[3] = {0.7548776662466927, 0.5698402909980532, 0.4142135623730950};
     const musurf_material_type *type = w->material->type;
-    double sum[3] = {0, 0, 0};
+    double mean[3] = {0, 0, 0}, square[3] = {0, 0, 0};
     rgb[0] = rgb[1] = rgb[2] = 0;
     const uint32_t lobes = w->map ? w->map->setup(w->material->compiled, wo, m, NULL, 0, closure)
                                   : type->setup(w->material->compiled, wo, NULL, 0, closure);
     if (!lobes) return;
-    for (uint32_t i = 0; i < w->samples; i++) {
-        float u[3];
-        for (int k = 0; k < 3; k++) {
-            const double place = 0.5 + i * step[k];
-            u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
+    for (uint32_t b = 0; b < w->most; b++) {
+        double shift[3], sum[3] = {0, 0, 0}, worst = 0;
+        mu_philox_uniforms(0, node * 4096 + b, shift);
+        for (uint32_t i = 0; i < BATCH; i++) {
+            float u[3];
+            for (int k = 0; k < 3; k++) {
+                const double place = shift[k] + i * step[k];
+                u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
+            }
+            musurf_sample s;
+            type->sample(closure, u, MUSURF_ALL_LOBES, &s);
+            for (int c = 0; c < 3 && s.lobe; c++) sum[c] += (double)s.weight[c];
         }
-        musurf_sample s;
-        type->sample(closure, u, MUSURF_ALL_LOBES, &s);
-        for (int c = 0; c < 3 && s.lobe; c++) sum[c] += (double)s.weight[c];
+        for (int c = 0; c < 3; c++) { /* Welford */
+            const double before = sum[c] / BATCH - mean[c];
+            mean[c] += before / (b + 1.0);
+            square[c] += before * (sum[c] / BATCH - mean[c]);
+            worst = fmax(worst, square[c]);
+        }
+        if (b + 1 >= LEAST_BATCHES && worst <= ENOUGH * ENOUGH * (b + 1.0) * b) break;
     }
-    for (int c = 0; c < 3; c++) rgb[c] = (float)(sum[c] / w->samples);
+    for (int c = 0; c < 3; c++) rgb[c] = (float)mean[c];
 }
 
 /* [any] All cosines of an azimuth and two sigmas. */
@@ -76,7 +91,7 @@ static void fill(void *context, uint32_t row) {
         const float x = (float)(flat * cos(phi)), y = (float)(flat * sin(phi));
         const float *turn = w->lobe->turn;
         const float wo[3] = {w->map ? x : turn[0] * x - turn[1] * y, w->map ? y : turn[1] * x + turn[0] * y, (float)z};
-        if (closure) mean_weight(w, m, wo, closure, rgb);
+        if (closure) mean_weight(w, m, wo, (uint64_t)row * t->cosines + i, closure, rgb);
         else rgb[0] = rgb[1] = rgb[2] = NAN;
     }
     free(closure);
@@ -99,15 +114,17 @@ static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_
 _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
                            uint32_t threads, mu_error *error) {
-    *t = (mu_albedo_table){.cosines = 64, .azimuths = 48, .sigmas = {1, 1}};
+    *t = (mu_albedo_table){.cosines = 64, .azimuths = 96, .sigmas = {1, 1}};
     if (!(material->plan.needs & MUSURF_NEEDS_TANGENT)) t->azimuths = 1;
-    work w = {.table = t, .material = material, .map = map, .lobe = low, .samples = SAMPLES};
+    work w = {.table = t, .material = material, .map = map, .lobe = low};
     if (map) {
         w.root[0] = sqrt(still->xx), w.root[1] = still->xx > 0 ? still->xy / w.root[0] : 0;
         w.root[2] = sqrt(fmax(still->yy - w.root[1] * w.root[1], 0));
         place_sigmas(t, low, high);
     }
-    if (t->sigmas[0] * t->sigmas[1] > 1) t->cosines = 32, t->azimuths = 24, w.samples = SAMPLES_WHERE_M_VARIES;
+    if (t->sigmas[0] * t->sigmas[1] > 1) t->cosines = 32, t->azimuths = 24;
+    const uint32_t nodes = t->sigmas[0] * t->sigmas[1] * t->azimuths * t->cosines, affordable = (1u << 16) / nodes;
+    w.most = affordable < LEAST_BATCHES ? LEAST_BATCHES : affordable < 2048 ? affordable : 2048;
     t->rgb = malloc(mu_albedo_table_bytes(t));
     if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->azimuths, threads, fill, &w);

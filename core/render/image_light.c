@@ -74,12 +74,15 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         if (!bright) continue;
         mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
         const size_t n = mu_ibl_reads(light->technique, &lobe, shading.wo, &light->settings, reads);
+        mu_ibl_batch batch;
+        batch.count = n;
         for (size_t k = 0; k < n; k++) {
             const float *d = reads[k].direction;
             const mu_vec3 world = mu_to_world(&shading.frame, mu_v3(d[0], d[1], d[2]));
-            mu_ibl_globe_add(&light->globe, (const float[3]){world.x, world.y, world.z}, reads[k].roughness * last,
-                             reads[k].weight, sum);
+            batch.x[k] = world.x, batch.y[k] = world.y, batch.z[k] = world.z;
+            batch.level[k] = reads[k].roughness * last, batch.weight[k] = reads[k].weight;
         }
+        mu_ibl_globe_sum(&light->globe, &batch, sum);
         for (int c = 0; c < 3; c++) out[i].rgb[c] = out[i].albedo[c] * sum[c];
         if (!(isfinite(sum[0] + sum[1] + sum[2]) && sum[0] >= 0 && sum[1] >= 0 && sum[2] >= 0)) {
             out[i].refused = 1;

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""`musurf render --integrator`: techniques of image-based lighting against albedos, against each other, turned, and against paths."""
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+import flip_evaluator
+import numpy
+
+import exr
+from command import answers, microfacet, musurf
+
+TECHNIQUES = ("split", "bent-normal", "major-axis")
+STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
+
+
+def ggx(linear, eta, **more):
+    """Section 4.1: alpha_lin and eta."""
+    return microfacet(ndf="ggx", alpha_x=linear**2 * (1 + eta), alpha_y=linear**2 * (1 - eta), **more)
+
+
+def display(rgb):
+    rgb = numpy.clip(rgb, 0, 1)
+    return numpy.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055).astype(numpy.float32)
+
+
+def flip(reference, picture):
+    return float(flip_evaluator.evaluate(display(reference), display(picture), "LDR", True, False, True, {})[1])
+
+
+class Render(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def render(self, by, objects, light, view, size=16, height=2.2, samples=1, radius=0.5, good=True, options=()):
+        scene = {"camera": {"type": "orthographic", "position": [5 * x for x in view], "height": height, "up": [0, 0, 1]},
+                 "film": {"width": size, "height": size, "pixels": "float", "filter": "box", "radius": radius},
+                 "integrator": {"depth": 1, "samples": samples}, "objects": objects, "lights": [light]}
+        file, out = pathlib.Path(self.folder.name, "scene.json"), pathlib.Path(self.folder.name, "out.exr")
+        file.write_text(json.dumps(scene))
+        done = musurf("render", file, "-o", out, "--integrator", by, "--quiet", *options)
+        if not good:
+            return done
+        self.assertEqual(done.returncode, 0, done.err)
+        channels = exr.read(out)[1]
+        return numpy.stack([channels[c] for c in "RGB"], -1).astype(float)
+
+    def test_even_light_gives_the_albedo(self):
+        """To 1e-3 and 5 standard errors of `musurf ibl albedo`, whose views these are; of a rejecting sampler (beckmann, gtr) the
+        renderer's own table has errors too: 2e7 samples on 64 nodes are 2e5 each, whose weights in [0, 1] deviate by 1/2 at most:
+        1e-3, of which 2 more are allowed."""
+        rows, columns = 3, 3
+        for material, most in ((ggx(0.4, 0.8), 1e-3), (ggx(0.7, 0, fresnel={"conductor": "Cu"}), 1e-3),
+                               (ggx(0.8, 0.9, rotation=0.6, fresnel={"dielectric": 1.5}), 1e-3),
+                               (microfacet(ndf="gtr", alpha=0.3, gamma=1.4), 3e-3)):
+            done = musurf("ibl", "albedo", "--rows", rows, "--columns", columns, "--samples", 1 << 16, stdin=[{"material": material}])
+            table = answers(done)[0]
+            for row, column in ((0, 1), (1, 2)):
+                z, phi = table["cosines"][row], table["azimuths"][column]
+                view = [math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi), z]
+                plate = [{"shape": "rectangle", "size": [9, 9], "material": material}]
+                for by in TECHNIQUES:
+                    seen = self.render(by, plate, {"type": "constant"}, view, size=2, height=0.1)[0, 0]
+                    off = numpy.abs(seen - table["albedo"][rows * row + column]).max()
+                    self.assertLess(off, most + 5 * table["deviation"], (by, material, z, phi))
+
+    def test_turned_together(self):
+        """Object, light and view a quarter about z: squares turn into themselves, and so do taps; what is left is rounding of
+        directions, 1e-6 of a texel's 0.006 or more, and of sums: 1e-3 of the radiance at the studio's steepest edges is ample. A
+        light that is not turned along makes another picture."""
+        material = ggx(0.5, 0.8)
+        view = [math.cos(0.3) * 0.9, math.sin(0.3) * 0.9, math.sqrt(1 - 0.81)]
+        turned = [-view[1], view[0], view[2]]
+        for by in TECHNIQUES:
+            before = self.render(by, [{"shape": "sphere", "radius": 1, "material": material}], STUDIO, view)
+            ball = {"shape": "sphere", "radius": 1, "material": material, "transform": [{"rotate": [0, 0, 1, 90]}]}
+            after = self.render(by, [ball], dict(STUDIO, rotation=90), turned)
+            other = self.render(by, [ball], STUDIO, turned)
+            inside = before.mean(-1) > 0
+            self.assertLess(numpy.quantile(numpy.abs(after - before)[inside], 0.9), 1e-3)
+            self.assertGreater(numpy.abs(other - before)[inside].mean(), 0.02)
+
+    def test_a_varying_map_is_the_constant_one(self):
+        """A roughness in a slot, of a formula that is constant, takes the way over M of each hit."""
+        view = [0.3, -0.9, 0.3]
+        balls = [[{"shape": "sphere", "radius": 1, "material": microfacet(alpha_x=x, alpha_y=0.1, rotation=0.4)}]
+                 for x in (0.4, {"expression": "0.4 + 0*u"})]
+        for by in TECHNIQUES:
+            constant, varying = (self.render(by, ball, STUDIO, view) for ball in balls)
+            self.assertLess(numpy.abs(constant - varying).max(), 2e-3 * constant.max())
+
+    def test_against_paths(self):
+        """Spheres of Figure 19: mean FLIP of the major axis is below that of the bent normal for alpha_lin < 0.5. 256 paths a pixel
+        leave noise that both share."""
+        for linear, eta in ((0.2, 0.75), (0.4, 0.8)):
+            ball = [{"shape": "sphere", "radius": 1, "material": ggx(linear, eta)}]
+            shot = lambda by, samples: self.render(by, ball, STUDIO, [0, -0.98, 0.2], size=64, samples=samples)
+            truth = shot("path", 256)
+            axis, bent = flip(truth, shot("major-axis", 16)), flip(truth, shot("bent-normal", 16))
+            self.assertLess(axis, bent)
+            self.assertLess(abs(shot("major-axis", 16).mean() / truth.mean() - 1), 0.2)
+
+    def test_what_it_does_not_light(self):
+        ball = lambda material: [{"shape": "sphere", "radius": 1, "material": material}]
+        for objects, light, word in ((ball({"material": "template.lambert"}), STUDIO, "microsurface"),
+                                     (ball(microfacet(fresnel={"dielectric": 1.5}, transmission=True)), STUDIO, "reflect"),
+                                     (ball(microfacet(ndf="gtr", gamma={"expression": "1 + u"})), STUDIO, "blended"),
+                                     (ball(microfacet(alpha=0.2)), {"type": "directional"}, "around")):
+            done = self.render("major-axis", objects, light, [0, -0.98, 0.2], good=False)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(word, done.err)
+
+
+if __name__ == "__main__":
+    unittest.main()

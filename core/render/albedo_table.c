@@ -20,7 +20,7 @@
 
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.15f
-enum { SIGMAS_MOST = 12, BATCH = 256, LEAST_BATCHES = 4 };
+enum { SIGMAS_MOST = 12, BATCH = 1024, LEAST_BATCHES = 2 };
 #define ENOUGH 2e-4
 /* The view of the node on the horizon. */
 #define LEAST_COSINE 1e-4
@@ -123,8 +123,8 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
         place_sigmas(t, low, high);
     }
     if (t->sigmas[0] * t->sigmas[1] > 1) t->cosines = 32, t->azimuths = 24;
-    const uint32_t nodes = t->sigmas[0] * t->sigmas[1] * t->azimuths * t->cosines, affordable = (1u << 16) / nodes;
-    w.most = affordable < LEAST_BATCHES ? LEAST_BATCHES : affordable < 2048 ? affordable : 2048;
+    const uint32_t nodes = t->sigmas[0] * t->sigmas[1] * t->azimuths * t->cosines, affordable = (1u << 14) / nodes;
+    w.most = affordable < LEAST_BATCHES ? LEAST_BATCHES : affordable < 512 ? affordable : 512;
     t->rgb = malloc(mu_albedo_table_bytes(t));
     if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->azimuths, threads, fill, &w);

@@ -33,7 +33,7 @@ DISTRIBUTION_HEADERS :=
 PROGRAMS  :=
 TEST_PROGRAMS :=
 TESTS     :=
--include core/bsdf/rules.mk plugin/rules.mk plugin/mitsuba/rules.mk core/render/rules.mk core/surface/rules.mk core/tension/rules.mk \
+-include core/bsdf/rules.mk plugin/rules.mk plugin/mitsuba/rules.mk plugin/blender/rules.mk core/render/rules.mk core/surface/rules.mk core/tension/rules.mk \
          core/ibl/rules.mk
 -include tests/rules.mk scripts/rules.mk
 

@@ -8,6 +8,8 @@ RENDER_LIBS    := -lembree3 -lOpenEXRCore -lassimp -ljansson -lpng -lkissfft-flo
 
 LIBRARIES += $(BUILD)/libmusurf_render.a
 PROGRAMS  += $(BUILD)/musurf
+MODULES   += $(BUILD)/libmusurf_render.so
+PUBLIC_HEADERS += core/render/musurf_render.h
 MODULES   += $(if $(wildcard core/render/module_oiio.cpp),$(BUILD)/musurf_oiio.so)
 
 $(RENDER_OBJECTS) $(BUILD)/obj/core/render/main.o: CPPFLAGS += $(RENDER_CFLAGS)
@@ -16,6 +18,10 @@ $(BUILD)/libmusurf_render.a: $(RENDER_OBJECTS)
 	rm -f $@ && $(AR) rcs $@ $^
 $(BUILD)/musurf: $(BUILD)/obj/core/render/main.o $(BUILD)/libmusurf_render.a $(BUILD)/libmusurf.a
 	$(CC) $(LDFLAGS) $^ $(RENDER_LIBS) -o $@
+# The same for hosts (musurf_render.h), which see nothing else of it.
+$(BUILD)/libmusurf_render.so: $(BUILD)/libmusurf_render.a $(BUILD)/libmusurf.a core/render/export.map
+	$(CC) -shared $(LDFLAGS) -Wl,--version-script=core/render/export.map $(if $(SANITIZE),,-Wl,-z,defs) \
+	    -Wl,-u,musurf_render_run $(filter %.a,$^) $(RENDER_LIBS) -o $@
 $(BUILD)/musurf_oiio.so: $(BUILD)/obj/core/render/module_oiio.o
 	$(CXX) -shared $(LDFLAGS) $^ $(shell pkg-config --libs OpenImageIO 2>/dev/null) -o $@
 $(BUILD)/obj/core/render/module_oiio.o: CXXFLAGS_EXTRA = $(shell pkg-config --cflags OpenImageIO 2>/dev/null)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""The render engine: a depsgraph is written as a scene (scene.py), and the renderer fills Blender's passes while it goes on."""
+import os
+import shutil
+import tempfile
+
+import bpy
+import numpy as np
+
+from . import library, scene
+
+SEVERITY = {library.WARNING: "WARNING", library.ERROR: "ERROR"}
+
+
+class Watch:
+    """What the renderer tells, told to Blender."""
+
+    def __init__(self, engine, result, buffers):
+        self.engine, self.result, self.buffers = engine, result, buffers
+
+    def stop(self):
+        return self.engine.test_break()
+
+    def progress(self, fraction, remaining, samples):
+        self.engine.update_progress(fraction)
+        self.engine.update_stats("", f"{samples} samples per pixel" + (f", {remaining:.0f} s left" if remaining >= 0 else ""))
+
+    def picture(self):
+        self.engine.show(self.result, self.buffers)
+        self.engine.update_result(self.result)
+
+    def message(self, severity, text):
+        self.engine.report({SEVERITY.get(severity, "INFO")}, "musurf: " + text)
+
+
+def upside_down(flat, width, height):
+    """Blender's rows go up."""
+    return np.ascontiguousarray(flat.reshape(height, width, -1)[::-1]).reshape(width * height, -1)
+
+
+class MusurfRender(bpy.types.RenderEngine):
+    bl_idname = "MUSURF"
+    bl_label = "musurf"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        self.register_pass(scene, renderlayer, "Albedo", 3, "RGB", "COLOR")
+        self.register_pass(scene, renderlayer, "Shading Normal", 3, "XYZ", "VECTOR")
+
+    def render(self, depsgraph):
+        render = depsgraph.scene.render
+        width = int(render.resolution_x * render.resolution_percentage / 100)
+        height = int(render.resolution_y * render.resolution_percentage / 100)
+        folder = tempfile.mkdtemp(prefix="musurf-")
+        try:
+            self.render_in(depsgraph, folder, max(width, 1), max(height, 1))
+        except (library.LibraryError, ValueError, OSError, MemoryError) as why:
+            self.refuse(str(why) or "not enough memory")
+        finally:
+            if depsgraph.scene.musurf.keep:
+                self.report({"INFO"}, f"musurf: the scene is in {folder}")
+            else:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def refuse(self, text):
+        self.report({"ERROR"}, "musurf: " + text)
+        self.error_set("musurf: " + text)
+
+    def render_in(self, depsgraph, folder, width, height):
+        self.update_stats("", "writing the scene")
+        text, name = scene.write(depsgraph, folder, width, height, lambda line: self.report({"WARNING"}, "musurf: " + line))
+        buffers = tuple(np.zeros((width * height, channels), dtype=np.float32) for channels in (4, 3, 3))
+        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        end = library.FAILED
+        try:
+            render, settings = depsgraph.scene.render, depsgraph.scene.musurf
+            threads = render.threads if render.threads_mode == "FIXED" else 0
+            end = library.render(text, name, buffers, Watch(self, result, buffers), threads=threads, noise=settings.noise)
+            if end != library.FAILED:
+                self.show(result, buffers)
+        finally:
+            self.end_result(result, cancel=end == library.FAILED)
+        if end == library.FAILED:
+            self.error_set("musurf: the scene was refused; the log says why")
+
+    def show(self, result, buffers):
+        passes = result.layers[0].passes
+        pixels, albedo, normal = buffers
+        combined = pixels.copy()
+        combined[:, 3] = 1  # what surrounds the scene is in the picture
+        for name, flat in (("Combined", combined), ("Albedo", albedo), ("Shading Normal", normal)):
+            target = passes.get(name)
+            if target:
+                width, height = result.resolution_x, result.resolution_y
+                target.rect.foreach_set(upside_down(flat, width, height).ravel()) if hasattr(target.rect, "foreach_set") \
+                    else setattr(target, "rect", upside_down(flat, width, height))

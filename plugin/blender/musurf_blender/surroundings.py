@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Camera, lights and world of a depsgraph as those of a scene file. Radiances as Cycles has them: a sun's strength is the irradiance on what
+faces it; an area light of P watts and area A, which shines to one side, has the radiance P / (4 A), as Cycles does."""
+import math
+import os
+
+import numpy as np
+
+
+def camera(thing, depsgraph, width, height, say):
+    data, world, render = thing.data, thing.matrix_world, depsgraph.scene.render
+    if data.type not in ("PERSP", "ORTHO"):
+        say(f"the camera \"{thing.name}\" is of type {data.type}, which is not known here; it is perspective now")
+    projection = thing.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
+    if abs(projection[0][2]) > 1e-6 or abs(projection[1][2]) > 1e-6 or (data.type == "ORTHO" and (data.shift_x or data.shift_y)):
+        say(f"the camera \"{thing.name}\" is shifted; the shift is left out")
+    if abs(projection[1][1] * height / (projection[0][0] * width) - 1) > 1e-4:
+        say("pixels that are not square are not known here; they are square now")
+    if data.dof.use_dof:
+        say(f"the camera \"{thing.name}\" has a depth of field; all is sharp here")
+    origin = world.translation
+    found = {"position": list(origin), "target": list(origin - world.col[2].xyz.normalized()), "up": list(world.col[1].xyz.normalized())}
+    if data.type == "ORTHO":
+        return {"type": "orthographic", "height": 2 / projection[1][1], **found}
+    return {"type": "perspective", "fov": math.degrees(2 * math.atan(1 / projection[1][1])), **found}
+
+
+def rows(matrix):
+    return [list(row) for row in matrix][:3]
+
+
+def light(data, matrix, name, say):
+    """One for the list of lights, or None."""
+    color = [c * data.energy for c in data.color]
+    if data.use_nodes and data.node_tree:
+        say(f"the light \"{name}\" has nodes; they are left out")
+    if data.type == "SUN":
+        if data.angle > math.radians(1):
+            say(f"the sun \"{name}\" is {math.degrees(data.angle):.2g} degrees wide; it is a point here")
+        return {"type": "directional", "direction": list(matrix.col[2].xyz.normalized()), "irradiance": color}
+    if data.type != "AREA" or data.shape not in ("SQUARE", "RECTANGLE"):
+        say(f"the light \"{name}\" is of type {data.type.lower()}{', ' + data.shape.lower() if data.type == 'AREA' else ''}: only suns and square or "
+            "rectangular areas are known here; it is left out")
+        return None
+    size = [data.size, data.size if data.shape == "SQUARE" else data.size_y]
+    scale = [matrix.col[i].xyz.length for i in range(3)]
+    if min(scale) == 0 or min(size) <= 0:
+        say(f"the light \"{name}\" has no area; it is left out")
+        return None
+    size = [size[0] * scale[0], size[1] * scale[1]]
+    # ours shines along its +z: turned about its x axis
+    axes = [matrix.col[i].xyz / scale[i] for i in range(3)]
+    place = [[axes[0][k], -axes[1][k], -axes[2][k], matrix.translation[k]] for k in range(3)]
+    return {"type": "rectangle", "size": size, "radiance": [c / (4 * size[0] * size[1]) for c in color], "transform": place}
+
+
+def linked(socket, kinds):
+    """The node behind a socket, if it is of one of these types."""
+    node = socket.links[0].from_node if socket.is_linked else None
+    return node if node and node.type in kinds else None
+
+
+def turn_of(node, say):
+    """Degrees about +z of an environment picture's vector."""
+    mapping = linked(node.inputs["Vector"], ("MAPPING",))
+    if not mapping:
+        return 0.0
+    turned = mapping.inputs["Rotation"].default_value
+    if abs(turned[0]) > 1e-6 or abs(turned[1]) > 1e-6 or any(abs(s - 1) > 1e-6 for s in mapping.inputs["Scale"].default_value):
+        say("the world's mapping does more than turn about z; only that is known here")
+    return math.degrees(-turned[2])  # the vector is turned, and the picture the other way
+
+
+def world(data, path_of, say):
+    """What surrounds the scene, or None for darkness."""
+    if not data:
+        return None
+    if not data.use_nodes or not data.node_tree:
+        return {"type": "constant", "radiance": list(data.color)}
+    output = next((n for n in data.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
+    node = linked(output.inputs["Surface"], ("BACKGROUND",)) if output else None
+    if not node:
+        if output and output.inputs["Surface"].is_linked:
+            say("the world has nodes that are not known here: a Background with a color or an environment picture is; it is black")
+        return None
+    strength, color = node.inputs["Strength"].default_value, node.inputs["Color"]
+    picture = linked(color, ("TEX_ENVIRONMENT",))
+    if color.is_linked and not (picture and picture.image and picture.projection == "EQUIRECTANGULAR"):
+        say("the world's color comes from nodes that are not known here: an equirectangular environment picture is; the socket's own color serves")
+        picture = None
+    if picture:
+        path = path_of(picture.image)
+        if path and os.path.exists(path):
+            return {"type": "environment", "image": path, "rotation": turn_of(picture, say), "scale": [strength] * 3}
+        say(f"the world's picture \"{picture.image.name}\" has no file{': ' + path if path else ''}; the world is black")
+        return None
+    found = [c * strength for c in list(color.default_value)[:3]]
+    return {"type": "constant", "radiance": found} if np.any(found) else None

@@ -39,6 +39,14 @@ def upside_down(flat, width, height):
     return np.ascontiguousarray(flat.reshape(height, width, -1)[::-1]).reshape(width * height, -1)
 
 
+def put(target, rows):
+    """Into a pass; before Blender 4 only the slow way does it."""
+    try:
+        target.rect.foreach_set(rows.ravel())
+    except TypeError:
+        target.rect = rows
+
+
 class MusurfRender(bpy.types.RenderEngine):
     bl_idname = "MUSURF"
     bl_label = "musurf"
@@ -94,6 +102,4 @@ class MusurfRender(bpy.types.RenderEngine):
         for name, flat in (("Combined", combined), ("Albedo", albedo), ("Shading Normal", normal)):
             target = passes.get(name)
             if target:
-                width, height = result.resolution_x, result.resolution_y
-                target.rect.foreach_set(upside_down(flat, width, height).ravel()) if hasattr(target.rect, "foreach_set") \
-                    else setattr(target, "rect", upside_down(flat, width, height))
+                put(target, upside_down(flat, result.resolution_x, result.resolution_y))

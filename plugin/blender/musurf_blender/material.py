@@ -15,6 +15,12 @@ def chosen(group, parameter, say):
     return found
 
 
+def stored(group):
+    """Names of what the file has of the group."""
+    own = group.bl_system_properties_get() if hasattr(group, "bl_system_properties_get") else group  # apart from Blender 5 on
+    return list(own.keys()) if own else []
+
+
 def nested(values, kind):
     if kind == "number":
         return values[0]
@@ -74,7 +80,7 @@ class Writer:
 
     def all(self):
         known = {name for p in self.group.table["parameters"] for name, _ in table.properties(p)}
-        for name in self.group.keys():
+        for name in stored(self.group):
             if name not in known:
                 self.say(f"{self.group.table['id']} has no parameter \"{name}\" any more; it is left out")
         for parameter in self.group.table["parameters"]:

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """Camera, lights and world of a depsgraph as those of a scene file. Radiances as Cycles has them: a sun's strength is the irradiance on what
-faces it; an area light of P watts and area A, which shines to one side, has the radiance P / (4 A), as Cycles does."""
+faces it; an area light of P watts and area A has the radiance P / (4 A), and P / (pi A) in newer ones (measured in 3.4 and 5.0)."""
 import math
 import os
 
+import bpy
 import numpy as np
+
+AREA = math.pi if bpy.app.version >= (5, 0, 0) else 4
 
 
 def camera(thing, depsgraph, width, height, say):
@@ -52,7 +55,7 @@ def light(data, matrix, name, say):
     # ours shines along its +z: turned about its x axis
     axes = [matrix.col[i].xyz / scale[i] for i in range(3)]
     place = [[axes[0][k], -axes[1][k], -axes[2][k], matrix.translation[k]] for k in range(3)]
-    return {"type": "rectangle", "size": size, "radiance": [c / (4 * size[0] * size[1]) for c in color], "transform": place}
+    return {"type": "rectangle", "size": size, "radiance": [c / (AREA * size[0] * size[1]) for c in color], "transform": place}
 
 
 def linked(socket, kinds):

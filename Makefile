@@ -112,6 +112,8 @@ help:
 	@echo 'make tables     measure the accuracy and speed tables of the README again'
 	@echo 'make stability  measure errors over stiff and extreme cases, in float and double, into $(BUILD)/stability/'
 	@echo 'make mitsuba    Mitsuba 3 into $(BUILD)/mitsuba (some 400 MB); then make test-mitsuba: musurf inside it, in full'
+	@echo 'make blender-addon  an add-on for Blender as a zip, $(BUILD)/musurf_blender.zip'
+	@echo 'make blender    Blender, and a newer one from PyPI into $(BUILD)/bpy (some 900 MB); then make test-blender: musurf inside, in full'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'
 	@echo 'make install    PREFIX=/usr/local DESTDIR= ; also: uninstall'
 	@echo 'make clean      remove what was built; distclean removes $(BUILD)/ with the virtual environment'

@@ -85,7 +85,7 @@ class Render(unittest.TestCase):
         for host in HOSTS:
             found, log = self.inside(host, seeds=list(range(COUNT)), keep=True)
             version = next(line.split()[-1] for line in log.splitlines() if line.startswith("TEST Blender"))
-            file.write_text(json.dumps(by_hand(math.pi if version >= "5" else 4)))  # test_blender_cycles.py has it from Cycles
+            file.write_text(json.dumps(by_hand(math.pi if version >= "4" else 4)))  # test_blender_cycles.py has it from Cycles
             hand = np.stack([standalone(file, out, 300 + i) for i in range(COUNT)]).astype(float)
             self.assertNotIn("Warning", log)
             kept = sorted({line.split()[-1] for line in log.splitlines() if "the scene is in" in line})

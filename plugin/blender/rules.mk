@@ -10,9 +10,9 @@ blender-addon: deps
 $(BLENDER_ZIP): plugin/blender/pack $(BLENDER_PACKAGE) $(BLENDER_OBJECTS)
 	$(PYTHON) plugin/blender/pack $@ $(BLENDER_PACKAGE) -- $(BLENDER_OBJECTS)
 
-# Blender itself, as Debian has it: some 500 MB with what it needs, so only when asked for.
+# Blender itself, as Debian has it, and a newer one from PyPI: some 900 MB with what they need, so only when asked for.
 blender: deps
-	HOSTS=blender BUILD=$(abspath $(BUILD)) scripts/install
+	HOSTS="blender bpy" BUILD=$(abspath $(BUILD)) scripts/install
 test-blender: blender
 	@$(MAKE) --no-print-directory run-test-blender
 run-test-blender: all $(BLENDER_ZIP)

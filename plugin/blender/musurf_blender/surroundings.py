@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """Camera, lights and world of a depsgraph as those of a scene file. Radiances as Cycles has them: a sun's strength is the irradiance on what
-faces it; an area light of P watts and area A has the radiance P / (4 A), and P / (pi A) in newer ones (measured in 3.4 and 5.0)."""
+faces it; an area light of P watts and area A has the radiance P / (4 A), and P / (pi A) from Blender 4 on (measured in 3.4; 4.2, 4.5, 5.0)."""
 import math
 import os
 
 import bpy
 import numpy as np
 
-AREA = math.pi if bpy.app.version >= (5, 0, 0) else 4
+AREA = math.pi if bpy.app.version >= (4, 0, 0) else 4
 
 
 def camera(thing, depsgraph, width, height, say):

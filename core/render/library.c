@@ -81,8 +81,8 @@ static _Bool prepare(mu_run *run, mu_error *error) {
     if (!good) return 0;
     const mu_film_settings *film = &run->scene.film;
     if ((size_t)film->width * film->height != r->count)
-        return mu_fail(error, "%s: the film has %u x %u pixels, but the host's buffer %zu", r->name, film->width,
-                       film->height, r->count);
+        return mu_fail(error, "%s: the film has %u x %u pixels, but the host's buffer %zu", r->name,
+                       film->width, film->height, r->count);
     if (!mu_film_make(&run->film, film->width, film->height, error)) return 0;
     run->geometry = mu_geometry_build(&run->scene, r->threads, error);
     if (run->geometry) run->lights = mu_lights_build(&run->scene, error);
@@ -97,8 +97,9 @@ static mu_render_end render(mu_run *run, mu_error *error) {
                                    .checkpoint = r->picture ? picture : NULL,
                                    .checkpoint_seconds = r->interval > 0 ? r->interval : 1};
     if (!prepare(run, error)) return MU_RENDER_FAILED;
-    const mu_render_plan limits = {
-        .threads = r->threads, .samples = run->scene.integrator.samples, .noise = r->noise > 0 ? r->noise : 0};
+    const mu_render_plan limits = {.threads = r->threads,
+                                   .samples = run->scene.integrator.samples,
+                                   .noise = r->noise > 0 ? r->noise : 0};
     const mu_render_end end =
         mu_render_scene(&run->film, &run->scene, run->geometry, run->lights, &limits, &watch, error);
     if (end != MU_RENDER_FAILED) fill(run);
@@ -122,7 +123,9 @@ int32_t musurf_render_run(const musurf_render_request *request) {
     mu_geometry_free(run.geometry);
     mu_scene_free(&run.scene);
     mu_film_free(&run.film);
-    return end == MU_RENDER_DONE ? MUSURF_RENDER_DONE : end == MU_RENDER_STOPPED ? MUSURF_RENDER_STOPPED : MUSURF_RENDER_FAILED;
+    return end == MU_RENDER_DONE      ? MUSURF_RENDER_DONE
+           : end == MU_RENDER_STOPPED ? MUSURF_RENDER_STOPPED
+                                      : MUSURF_RENDER_FAILED;
 }
 
 char *musurf_render_parameters(const char *material, void *context,
@@ -131,8 +134,8 @@ char *musurf_render_parameters(const char *material, void *context,
     mu_error error = {.warn = warn, .context = &ear};
     mu_plugins *plugins = mu_plugins_new();
     const musurf_material_type *type = plugins ? mu_plugins_type(plugins, material, &error) : NULL;
-    json_t *table = type ? json_pack("{s:s, s:s, s:s, s:o}", "id", type->id, "label", type->label, "doc", type->doc,
-                                     "parameters", mu_info_params(type))
+    json_t *table = type ? json_pack("{s:s, s:s, s:s, s:o}", "id", type->id, "label", type->label, "doc",
+                                     type->doc, "parameters", mu_info_params(type))
                          : NULL;
     char *text = table ? json_dumps(table, JSON_COMPACT) : NULL;
     json_decref(table);

@@ -23,18 +23,20 @@ enum { MUSURF_RENDER_DONE = 0, MUSURF_RENDER_STOPPED = 1, MUSURF_RENDER_FAILED =
 enum { MUSURF_RENDER_WARNING = 1, MUSURF_RENDER_ERROR = 2 };
 
 typedef struct musurf_render_request {
-    uint32_t size; /* sizeof of this struct as the caller knows it: at least up to `stop` */
-    uint32_t threads; /* 0: one per processor */
+    uint32_t size;     /* sizeof of this struct as the caller knows it: at least up to `stop` */
+    uint32_t threads;  /* 0: one per processor */
     const char *scene; /* JSON */
-    const char *name;  /* of that text, as if it were a file: for messages, and files are named relative to it */
-    float *pixels;     /* RGBA, linear, alpha is coverage and RGB not multiplied by it; row by row from the top */
-    size_t count;      /* of pixels: width times height of the scene's film, or the call fails */
-    double noise;      /* stop at this mean relative standard error; 0: at the scene's samples alone */
-    double interval;   /* seconds from one `picture` to the next */
-    void *context;     /* of the callbacks, each of which may be NULL */
+    const char
+        *name;     /* of that text, as if it were a file: for messages, and files are named relative to it */
+    float *pixels; /* RGBA, linear, alpha is coverage and RGB not multiplied by it; row by row from the top */
+    size_t count;  /* of pixels: width times height of the scene's film, or the call fails */
+    double noise;  /* stop at this mean relative standard error; 0: at the scene's samples alone */
+    double interval;                /* seconds from one `picture` to the next */
+    void *context;                  /* of the callbacks, each of which may be NULL */
     int32_t (*stop)(void *context); /* polled 20 times a second; not 0: end */
-    void (*progress)(void *context, double fraction, double remaining, uint32_t samples); /* remaining < 0: unknown */
-    void (*picture)(void *context); /* the buffers hold what is there so far */
+    void (*progress)(void *context, double fraction, double remaining,
+                     uint32_t samples); /* remaining < 0: unknown */
+    void (*picture)(void *context);     /* the buffers hold what is there so far */
     void (*message)(void *context, int32_t severity, const char *text); /* one line */
     float *albedo, *normal; /* 3 numbers per pixel, of the first hit, 0 where there is none; or NULL */
 } musurf_render_request;

@@ -57,8 +57,8 @@ def main(out):
     scene = build()
     scene.render.engine = "MUSURF"
     scene.view_settings.view_transform = "Standard"
-    scene.musurf.samples = 128
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 720, 300, 100
+    scene.musurf.samples, scene.musurf.depth = 64, 3
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 600, 250, 100
     scene.render.filepath = out
     bpy.ops.render.render(write_still=True)
 

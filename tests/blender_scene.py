@@ -138,6 +138,9 @@ def render(job):
     scene.render.engine = "MUSURF"
     scene.render.threads_mode, scene.render.threads = "FIXED", 2
     scene.musurf.keep = bool(job.get("keep"))
+    if job.get("region"):
+        scene.render.use_border, scene.render.use_crop_to_border = True, job["crop"]
+        scene.render.border_min_x, scene.render.border_max_x, scene.render.border_min_y, scene.render.border_max_y = job["region"]
     if job.get("masking"):
         for one in bpy.data.materials:
             one.musurf.group().masking = job["masking"]

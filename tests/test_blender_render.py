@@ -87,7 +87,7 @@ class Render(unittest.TestCase):
             version = next(line.split()[-1] for line in log.splitlines() if line.startswith("TEST Blender"))
             file.write_text(json.dumps(by_hand(math.pi if version >= "4" else 4)))  # test_blender_cycles.py has it from Cycles
             hand = np.stack([standalone(file, out, 300 + i) for i in range(COUNT)]).astype(float)
-            self.assertNotIn("Warning", log)
+            self.assertNotIn("Warning: musurf", log)
             kept = sorted({line.split()[-1] for line in log.splitlines() if "the scene is in" in line})
             self.assertEqual(len(kept), COUNT)
             mean, bound = pixel_test.judge(found.astype(float), hand)
@@ -106,6 +106,14 @@ class Render(unittest.TestCase):
             other, _ = self.inside(host, seeds=list(range(COUNT)), tension=False)
             mean, bound = pixel_test.judge(other.astype(float), hand)
             self.assertGreater(mean, 1.2 * bound)
+
+    def test_a_region_is_a_part(self):
+        for host in HOSTS:
+            whole = self.inside(host, seeds=[1], size=(16, 12), samples=4)[0][0]
+            for crop in (False, True):
+                part = self.inside(host, seeds=[1], size=(16, 12), samples=4, region=(0.25, 0.75, 0.5, 1.0), crop=crop)[0][0]
+                self.assertEqual(part.shape[:2], (6, 8) if crop else (12, 16))
+                self.assertTrue(np.array_equal(part if crop else part[:6, 4:12], whole[:6, 4:12]))
 
 
 if __name__ == "__main__":

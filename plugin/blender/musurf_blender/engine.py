@@ -16,8 +16,8 @@ SEVERITY = {library.WARNING: "WARNING", library.ERROR: "ERROR"}
 class Watch:
     """What the renderer tells, told to Blender."""
 
-    def __init__(self, engine, result, buffers):
-        self.engine, self.result, self.buffers = engine, result, buffers
+    def __init__(self, engine, result, buffers, region):
+        self.engine, self.result, self.buffers, self.region = engine, result, buffers, region
 
     def stop(self):
         return self.engine.test_break()
@@ -27,16 +27,26 @@ class Watch:
         self.engine.update_stats("", f"{samples} samples per pixel" + (f", {remaining:.0f} s left" if remaining >= 0 else ""))
 
     def picture(self):
-        self.engine.show(self.result, self.buffers)
+        self.engine.show(self.result, self.buffers, self.region)
         self.engine.update_result(self.result)
 
     def message(self, severity, text):
         self.engine.report({SEVERITY.get(severity, "INFO")}, "musurf: " + text)
 
 
-def upside_down(flat, width, height):
-    """Blender's rows go up."""
-    return np.ascontiguousarray(flat.reshape(height, width, -1)[::-1]).reshape(width * height, -1)
+class Region:
+    """What of a picture of width x height Blender takes: its render region, or all."""
+
+    def __init__(self, render, width, height, result):
+        self.width, self.height, self.taken = width, height, (result.resolution_x, result.resolution_y)
+        at = (int(render.border_min_x * width), int(render.border_min_y * height)) if render.use_border else (0, 0)
+        self.at = tuple(max(0, min(a, whole - part)) for a, whole, part in zip(at, (width, height), self.taken))
+
+    def cut(self, flat):
+        """Blender's rows go up."""
+        (x, y), (width, height) = self.at, self.taken
+        rows = flat.reshape(self.height, self.width, -1)[::-1]
+        return np.ascontiguousarray(rows[y:y + height, x:x + width]).reshape(width * height, -1)
 
 
 def put(target, rows):
@@ -85,16 +95,17 @@ class MusurfRender(bpy.types.RenderEngine):
         end = library.FAILED
         try:
             render, settings = depsgraph.scene.render, depsgraph.scene.musurf
+            region = Region(render, width, height, result)
             threads = render.threads if render.threads_mode == "FIXED" else 0
-            end = library.render(text, name, buffers, Watch(self, result, buffers), threads=threads, noise=settings.noise)
+            end = library.render(text, name, buffers, Watch(self, result, buffers, region), threads=threads, noise=settings.noise)
             if end != library.FAILED:
-                self.show(result, buffers)
+                self.show(result, buffers, region)
         finally:
             self.end_result(result, cancel=end == library.FAILED)
         if end == library.FAILED:
             self.error_set("musurf: the scene was refused; the log says why")
 
-    def show(self, result, buffers):
+    def show(self, result, buffers, region):
         passes = result.layers[0].passes
         pixels, albedo, normal = buffers
         combined = pixels.copy()
@@ -102,4 +113,4 @@ class MusurfRender(bpy.types.RenderEngine):
         for name, flat in (("Combined", combined), ("Albedo", albedo), ("Shading Normal", normal)):
             target = passes.get(name)
             if target:
-                put(target, upside_down(flat, result.resolution_x, result.resolution_y))
+                put(target, region.cut(flat))

@@ -137,8 +137,7 @@ class Export:
         if not self.objects:
             raise ValueError("nothing in the scene has faces to be seen")
         around = surroundings.world(scene.world, self.path_of, self.say)
-        for wanted, what in ((scene.render.use_border, "a render region is"), (scene.render.use_motion_blur, "motion blur is"),
-                             (scene.render.film_transparent, "a transparent film is")):
+        for wanted, what in ((scene.render.use_motion_blur, "motion blur is"), (scene.render.film_transparent, "a transparent film is")):
             if wanted:
                 self.say(f"{what} not known here; it is left out")
         return {"musurf": 1, "camera": surroundings.camera(scene.camera.evaluated_get(self.depsgraph), self.depsgraph, width, height, self.say),

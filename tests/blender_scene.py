@@ -59,7 +59,30 @@ def stretched(thing):
     key.value = 1
 
 
-def lights(scene, wanted):
+def surround(scene, folder):
+    """A picture of soft colors, each direction its own, turned about z and twice as bright."""
+    width, height = 256, 128
+    u, v = np.meshgrid((np.arange(width) + 0.5) / width * 2 * np.pi, (np.arange(height) + 0.5) / height * np.pi)
+    colors = [1.1 + np.sin(u) * np.sin(v), 1.1 + np.cos(u) * np.sin(v), 1.1 + np.cos(v), np.ones_like(u)]
+    image = bpy.data.images.new("sky", width, height, float_buffer=True)
+    image.pixels.foreach_set(np.stack(colors, axis=-1).astype(np.float32).ravel())
+    image.filepath_raw, image.file_format = os.path.join(folder, "sky.exr"), "OPEN_EXR"
+    image.save()
+    image.source = "FILE"
+    image.colorspace_settings.name = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    picture, mapping, place = (tree.nodes.new(kind) for kind in ("ShaderNodeTexEnvironment", "ShaderNodeMapping", "ShaderNodeTexCoord"))
+    picture.image = image
+    mapping.inputs["Rotation"].default_value[2] = 0.7
+    tree.nodes["Background"].inputs["Strength"].default_value = 2
+    tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    tree.links.new(picture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+def lights(scene, wanted, folder):
     """Of area, sun and world. In Cycles lamps block no light, and what is behind them shines through: ours are solid."""
     area = bpy.data.lights.new("lamp", "AREA")
     area.shape, area.size, area.size_y, area.energy, area.color = "RECTANGLE", 1.5, 1.0, 90, (1, 0.9, 0.8)
@@ -72,6 +95,8 @@ def lights(scene, wanted):
     for kind, thing in (("area", lamp), ("sun", far)):
         if kind in wanted:
             scene.collection.objects.link(thing)
+    if "picture" in wanted:
+        return surround(scene, folder)
     if "world" not in wanted:
         return
     scene.world = bpy.data.worlds.new("world")
@@ -98,7 +123,7 @@ def build(job):
     sign = plate("sign", 1, 2, ((0.2, 1.0, 1.0), (math.radians(50), 0, 0)), material("sign", ndf))
     stretched(sign)
     sign.musurf.tension = job.get("tension", True)
-    lights(scene, job.get("lights", ("area", "sun", "world")))
+    lights(scene, job.get("lights", ("area", "sun", "world")), os.path.dirname(job.get("out", "")))
     camera(scene)
     width, height = job.get("size", (32, 24))
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100

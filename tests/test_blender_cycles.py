@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """GGX under M has an equal in Cycles: the add-on writes it as nodes, and Cycles, a renderer with a code of its own, makes the same picture of one
-and the same scene in Blender: camera, area light, sun, world, skew, and the tension of a plate, given to Cycles as its map. Direct light:
+and the same scene in Blender: camera, area light, sun, world and its picture, skew, and the tension of a plate, given to Cycles as its map. Direct light:
 per pixel they differ by noise alone, and to the eye not at all (FLIP below 0.02).
 
 Lamps are solid here, and Cycles adds what is behind them, so each kind of light has a render of its own. Cycles' masking is separable before Blender
@@ -41,7 +41,7 @@ class Cycles(unittest.TestCase):
 
     def test_the_same_picture(self):
         for host in HOSTS:
-            for lights in (["area"], ["sun", "world"]):
+            for lights in (["area"], ["sun", "world"], ["picture"]):
                 theirs, version = self.inside(host, engine="CYCLES", map=MAP, lights=lights)
                 masking = "separable" if version < (3, 5, 0) else "height_correlated"
                 ours, _ = self.inside(host, masking=masking, lights=lights)

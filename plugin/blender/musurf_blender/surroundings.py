@@ -94,6 +94,9 @@ def world(data, path_of, say):
         picture = None
     if picture:
         path = path_of(picture.image)
+        space = picture.image.colorspace_settings.name
+        if picture.image.is_float and not (space.startswith("Linear") or space in ("Non-Color", "Raw")):
+            say(f"the world's picture \"{picture.image.name}\" has floats of the color space {space}; they are taken as linear")
         if path and os.path.exists(path):
             return {"type": "environment", "image": path, "rotation": turn_of(picture, say), "scale": [strength] * 3}
         say(f"the world's picture \"{picture.image.name}\" has no file{': ' + path if path else ''}; the world is black")

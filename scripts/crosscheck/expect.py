@@ -51,7 +51,7 @@ def joint(core, spec, m, a, b):
 
 
 QUADRATURE = 1e-3  # relative, of an albedo: the nodes of a bin are doubled until it changes by its part of half of that
-MOST_NODES = 64  # per bin and direction; the quadrature of a narrower lobe is told by the next doubling's size
+MOST_NODES = 32  # per bin and direction, at most: where f jumps, as a histogram's does, a bin never settles
 
 
 def settled(shares):

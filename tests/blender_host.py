@@ -10,6 +10,8 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
+import unittest
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -72,3 +74,12 @@ def do(host, scripts, task, codes=(0,), **environment):
     if code not in codes or "TEST end" not in log:
         raise AssertionError(f"exit code {code}\n{log}")
     return log
+
+
+class Installed(unittest.TestCase):
+    """With a folder of its own, and in it the add-on's `scripts`."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.scripts = install(self.folder.name)

@@ -10,7 +10,6 @@ Lamps are solid here, and Cycles adds what is behind them, so each kind of light
 import math
 import pathlib
 import sys
-import tempfile
 import unittest
 
 import blender_host
@@ -18,20 +17,13 @@ import blender_host
 HOSTS = blender_host.need()
 import numpy as np  # noqa: E402
 import pixel_test  # noqa: E402
-from test_blender_render import flip  # noqa: E402
+from picture_flip import flip  # noqa: E402
 
 SIZE, SAMPLES, COUNT = ((64, 48), 256, 8) if blender_host.FULL else ((32, 24), 96, 8)
 MAP = (2.0, 0.0, 0.0, 1.0)
 
 
-class Cycles(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.scripts = blender_host.install(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Cycles(blender_host.Installed):
     def inside(self, host, **task):
         out = pathlib.Path(self.folder.name, "out.npy")
         log = blender_host.do(host, self.scripts, {"do": "render", "size": SIZE, "samples": SAMPLES, "out": str(out), "ndf": "ggx", "depth": 1,

@@ -8,7 +8,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import blender_host
@@ -38,14 +37,7 @@ def part(log, name):
     return found.group(1) if found else None
 
 
-class Messages(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.scripts = blender_host.install(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Messages(blender_host.Installed):
     def test_cases(self):
         for host in HOSTS:
             log = blender_host.do(host, self.scripts, {"do": "blender_tasks.cases"}, codes=(0, 1))

@@ -9,17 +9,16 @@ import math
 import pathlib
 import shutil
 import sys
-import tempfile
 import unittest
 
 import blender_host
 
 HOSTS = blender_host.need()
 import exr  # noqa: E402
-import flip_evaluator  # noqa: E402
 import numpy as np  # noqa: E402
 import pixel_test  # noqa: E402
 from command import musurf  # noqa: E402
+from picture_flip import flip  # noqa: E402
 
 SIZE, SAMPLES, COUNT = ((96, 72), 256, 8) if blender_host.FULL else ((32, 24), 128, 8)
 
@@ -58,23 +57,7 @@ def standalone(scene, out, seed):
     return np.stack([channels[c] for c in "RGB"], axis=-1)
 
 
-def display(picture):
-    x = np.clip(picture, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
-
-
-def flip(a, b):
-    return float(flip_evaluator.evaluate(display(a), display(b), "LDR", True, False, True, {})[1])
-
-
-class Render(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.scripts = blender_host.install(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Render(blender_host.Installed):
     def inside(self, host, **task):
         out = pathlib.Path(self.folder.name, "out.npy")
         log = blender_host.do(host, self.scripts, {"do": "render", "size": SIZE, "samples": SAMPLES, "out": str(out), **task})

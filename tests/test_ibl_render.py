@@ -8,11 +8,11 @@ import pathlib
 import tempfile
 import unittest
 
-import flip_evaluator
 import numpy
 
 import exr
 from command import answers, microfacet, musurf
+from picture_flip import flip
 
 TECHNIQUES = ("split", "bent-normal", "major-axis")
 STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
@@ -21,15 +21,6 @@ STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
 def ggx(linear, eta, **more):
     """Section 4.1: alpha_lin and eta."""
     return microfacet(ndf="ggx", alpha_x=linear**2 * (1 + eta), alpha_y=linear**2 * (1 - eta), **more)
-
-
-def display(rgb):
-    rgb = numpy.clip(rgb, 0, 1)
-    return numpy.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055).astype(numpy.float32)
-
-
-def flip(reference, picture):
-    return float(flip_evaluator.evaluate(display(reference), display(picture), "LDR", True, False, True, {})[1])
 
 
 class Render(unittest.TestCase):

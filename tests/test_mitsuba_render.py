@@ -15,10 +15,10 @@ import mitsuba_host
 
 mitsuba_host.need()
 import exr  # noqa: E402
-import flip_evaluator  # noqa: E402
 import numpy as np  # noqa: E402
 import pixel_test  # noqa: E402
 from command import musurf  # noqa: E402
+from picture_flip import flip  # noqa: E402
 
 FULL = bool(os.environ.get("FULL"))
 SIZE, SAMPLES, COUNT = ("96x72", 512, 8) if FULL else ("32x24", 256, 8)
@@ -41,15 +41,6 @@ def theirs(scene, folder):
     subprocess.run([mitsuba_host.PYTHON, mitsuba_host.ROOT / "tests/mitsuba_scene.py", scene, out, SIZE, str(SAMPLES), str(COUNT), "500"],
                    env=mitsuba_host.environment(), check=True)
     return np.load(out).astype(float)
-
-
-def display(picture):
-    x = np.clip(picture, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
-
-
-def flip(a, b):
-    return float(flip_evaluator.evaluate(display(a), display(b), "LDR", True, False, True, {})[1])
 
 
 class Render(unittest.TestCase):

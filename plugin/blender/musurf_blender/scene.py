@@ -13,6 +13,11 @@ from . import material, mesh, rest, surroundings
 SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
+def absolute(path, owner):
+    """The path in full; "//" begins one from the .blend file that the owner is linked from, or the open one."""
+    return os.path.abspath(bpy.path.abspath(path, library=getattr(owner, "library", None)))
+
+
 class Export:
     def __init__(self, depsgraph, folder, say):
         self.depsgraph, self.folder, self.said, self.tell = depsgraph, folder, set(), say
@@ -34,7 +39,7 @@ class Export:
             return path
         if image.source != "FILE" or not image.filepath:
             return None
-        return os.path.abspath(bpy.path.abspath(image.filepath, library=image.library))
+        return absolute(image.filepath, image)
 
     # ----------------------------------------------------------------------------------------------- materials
 
@@ -42,7 +47,7 @@ class Export:
         """What a material of Blender is here."""
         settings = one.musurf if one else None
         if settings and settings.enabled and settings.file:
-            return {"file": os.path.abspath(bpy.path.abspath(settings.file, library=one.library))}
+            return {"file": absolute(settings.file, one)}
         if settings and settings.enabled:
             group = settings.group()
             if group is not None:

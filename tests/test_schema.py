@@ -19,7 +19,8 @@ BEYOND_A_SCHEMA = ("not both", "phong has an exponent", "needs both n and k", "i
                    "is no whole number", "belongs to discrete_ggx", "compensated needs", "a random walk", "a tilted mirror",
                    "spline approximates", "the spline of Appendix A",
                    "spline needs", "spline knows", "bounded is known", "bounded needs", "is no formula", "no such file",
-                   "cannot vary here", "beside a picture only", "cannot vary too", "comes from vertices")
+                   "cannot vary here", "beside a picture only", "cannot vary too", "comes from vertices",
+                   "the second must not be less")
 
 
 def valid(schema, value):

@@ -141,6 +141,19 @@ class Attributes(Pictures):
         off = np.abs(got - want) > 1e-3 * want
         self.assertLess(off.mean(), 0.01)
 
+    def test_attribute_of_what_is_compiled_is_a_formula(self):
+        """gamma and gtr's alpha from vertices: the values of the formulas, so the same draws of the same materials; beyond "between" the
+        nearer end."""
+        vertices, faces = self.grid()
+        self.ply("m.ply", vertices, faces, {"g": [1 + v[3] for v in vertices], "a": [0.1 + 0.4 * v[4] for v in vertices]})
+        for formula, attribute in ((dict(gamma={"expression": "1 + u"}), dict(gamma={"attribute": "g", "between": [1, 2]})),
+                                   (dict(gamma={"expression": "1.2 + 0.6*min(max((u - 0.2)/0.6, 0), 1)"}), dict(gamma={"attribute": "g", "between": [1.2, 1.8]})),
+                                   (dict(gamma={"expression": "1 + u"}, alpha={"expression": "0.1 + 0.4*v"}),
+                                    dict(gamma={"attribute": "g", "between": [1, 2]}, alpha={"attribute": "a", "between": [0.1, 0.5]}))):
+            got, want = (self.picture(self.metal(**{"ndf": "gtr", "alpha": 0.2} | p), mesh="m") for p in (attribute, formula))
+            off = np.abs(got - want) > 1e-3 * want
+            self.assertLess(off.mean(), 0.01)
+
     def test_equal_attributes_are_the_constant(self):
         vertices, faces = self.grid()
         self.ply("m.ply", vertices, faces, {f"m{k // 2}{k % 2}": [np.ravel(M)[k]] * len(vertices) for k in range(4)})
@@ -218,9 +231,11 @@ class Refusals(Pictures):
             (dict(alpha={"attribute": "age"}), "$.objects[0]", "only a mesh has"),
             (dict(alpha={"expression": "0.1 +"}), "alpha.expression", "no formula", "at its end"),
             (dict(ndf="gtr", gamma={"expression": "1 - 2*u"}), "material.gamma", "at least 0"),
-            (dict(ndf="gtr", gamma={"expression": "1 + u"}, alpha={"expression": "0.1 + u"}), "material.alpha", "cannot vary here", "shape"),
-            (dict(ndf="gtr", gamma={"attribute": "age"}), "material.gamma", "comes from vertices"),
-            (dict(ndf="phong", exponent={"expression": "1 + u"}, rotation={"expression": "u"}, theta_x={"expression": "u"}), "cannot vary too"),
+            (dict(ndf="gtr", gamma={"attribute": "age"}), "material.gamma", "comes from vertices", "between"),
+            (dict(ndf="gtr", gamma={"attribute": "age", "between": [3, 1]}), "material.gamma.between", "[3, 1]", "the second must not be less"),
+            (dict(ndf="gtr", gamma={"attribute": "age", "between": [-1, 1]}), "material.gamma.between", "[-1, 1]", "at least 0"),
+            (dict(ndf="gtr", gamma={"expression": "1 + u", "between": [1, 2]}), "material.gamma.between"),
+            (dict(ndf="phong", exponent={"expression": "1 + u"}, theta_x={"expression": "u"}, theta_y={"expression": "u"}), "cannot vary too", "exponent and theta_x"),
             (dict(fresnel={"schlick": {"texture": "good.exr"}}), "fresnel.schlick", "cannot vary over the surface"),
             (dict(alpha={"texture": "bad.exr", "range": [0.5, 1]}, rotation={"expression": "u"}), "material.rotation", "beside a picture only transform"),
             (dict(alpha={"expression": "u/0"}), "material.alpha: gives inf", "finite", "all places"),

@@ -32,6 +32,17 @@ class Blends(Pictures):
         wanted = (1 - share) * ends[0] + share * ends[1]
         self.assertLess(np.abs(mixed - wanted).mean(), 0.02 * wanted.mean())
 
+    def test_gamma_and_alpha_at_once(self):
+        """Formulas of two values each, on halves and on the other halves: everywhere it is bit by bit one of the four materials, each on its
+        quarter."""
+        step = "{} + {}*min(floor(2*{}), 1)"
+        got = self.picture(self.metal(ndf="gtr", gamma={"expression": step.format(1.25, 1.75, "u")}, alpha={"expression": step.format(0.2, 0.2, "v")}, transform=M))
+        four = [self.picture(self.metal(ndf="gtr", gamma=g, alpha=a, transform=M)) for g in (1.25, 3) for a in (0.2, 0.4)]
+        same = np.array([(got == one).all(0) for one in four])
+        self.assertGreater(same.any(0).mean(), 0.85)  # but where a pixel sees two, along two lines now
+        for one in same & (np.array(four).std(0) > 0).any(0):
+            self.assertGreater(one.mean(), 0.05)
+
     def test_alpha_of_gtr(self):
         """What the plugin refuses in a slot is blended: between 17 values of a ratio below 1.1 a mixture is near its middle."""
         formula = {"expression": "0.15 + 0.3*u"}

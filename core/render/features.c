@@ -2,8 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* features.c: the feature bits of a scene, from what it contains and what its materials say of themselves. */
 #include "core/render/features.h"
-#include "core/render/blend.h"
-#include "core/render/varying.h"
+#include "core/render/source.h"
 
 static const mu_feature list[MU_FEATURE_COUNT] = {
 #define X(bit, name, brings) {name, brings},
@@ -45,14 +44,12 @@ static uint32_t of_material(const mu_material *material) {
     if (material->jacobian.map != MU_JACOBIAN_NONE) bits |= MU_FEATURE_JACOBIANS;
     if (material->jacobian.map == MU_JACOBIAN_DISPLACEMENT) bits |= MU_FEATURE_TEXTURES;
     if (material->footprints) bits |= MU_FEATURE_FOOTPRINTS;
-    if (material->blend)
-        bits |= MU_FEATURE_BLENDS |
-                (mu_source_is_picture(&material->blend->source) ? MU_FEATURE_TEXTURES : MU_FEATURE_EXPRESSIONS);
-    const mu_varying *varying = material->varying;
-    for (size_t i = 0; varying && i < varying->count; ++i)
-        bits |= mu_source_is_picture(varying->sources + i)                   ? MU_FEATURE_TEXTURES
-                : varying->sources[i].kind == MU_SOURCE_ATTRIBUTE ? MU_FEATURE_ATTRIBUTES
-                                                                  : MU_FEATURE_EXPRESSIONS;
+    if (material->blend) bits |= MU_FEATURE_BLENDS;
+    const mu_source *source;
+    for (size_t i = 0; (source = mu_material_source(material, i)); ++i)
+        bits |= mu_source_is_picture(source)            ? MU_FEATURE_TEXTURES
+                : source->kind == MU_SOURCE_ATTRIBUTE ? MU_FEATURE_ATTRIBUTES
+                                                        : MU_FEATURE_EXPRESSIONS;
     return bits;
 }
 

@@ -86,7 +86,7 @@ static json_t *value_schema(const musurf_material_type *type, const char *name) 
         json_decref(members);
         schema = plain_schema(p);
         if (mu_source_serves(p) || mu_source_blends(p)) {
-            json_t *any = mu_source_schema(p);
+            json_t *any = mu_source_schema(p, number_schema(p));
             json_array_insert_new(any, 0, schema);
             schema = json_pack("{s:o}", "anyOf", any);
         }

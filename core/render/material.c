@@ -124,7 +124,8 @@ static uint64_t digest_of(const mu_settings *settings) {
         }
     for (size_t i = 0; i < settings->source_count; i++)
         digest = digest_picture(digest, &settings->sources[i].picture);
-    return digest_picture(digest, &settings->blended.picture);
+    for (int i = 0; i < settings->blended_count; i++) digest = digest_picture(digest, &settings->blended[i].picture);
+    return digest;
 }
 
 /* The plugin's footprint: the parameter of that kind that may vary. */
@@ -161,18 +162,23 @@ static void join_plans(musurf_plan *plan, const musurf_plan *other) {
     plan->table_bytes += other->table_bytes, plan->material_bytes += other->material_bytes;
 }
 
+static void set_values(mu_settings *settings, const mu_blend *blend, int number) {
+    for (int i = 0; i < blend->axes; i++)
+        settings->values[mu_settings_find(settings, blend->axis[i].source.param) - settings->items][0] =
+            mu_blend_value(blend, i, number);
+}
+
 /* At each of the values between which it is blended. */
 static _Bool compile_blend(mu_material *material, mu_settings *settings, const mu_place *place, uint32_t *refused,
                            mu_error *error) {
     mu_blend *blend = material->blend;
-    double *const value = settings->values[mu_settings_find(settings, blend->source.param) - settings->items];
-    *value = blend->knot[0];
+    set_values(settings, blend, 0);
     if (!compile_once(material, settings, place, refused, error)) return 0;
     blend->compiled[0] = material->compiled;
     const musurf_plan first = material->plan;
     musurf_plan all = first;
     for (int i = 1; i < blend->count; i++) {
-        *value = blend->knot[i];
+        set_values(settings, blend, i);
         const _Bool good = compile(material, settings, place, NULL, error) && describe(material, place, error);
         blend->compiled[i] = material->compiled;
         join_plans(&all, &material->plan);
@@ -185,21 +191,26 @@ static _Bool compile_blend(mu_material *material, mu_settings *settings, const m
 
 static _Bool compile_all(mu_material *material, mu_settings *settings, const mu_place *place, uint32_t *refused,
                          mu_error *error) {
-    if (settings->blended.param && !(material->blend = mu_blend_make(&settings->blended, place, error))) return 0;
+    if (settings->blended_count && !(material->blend = mu_blend_make(settings, place, error))) return 0;
     return material->blend ? compile_blend(material, settings, place, refused, error)
                            : compile_once(material, settings, place, refused, error);
 }
 
 /* What the plugin does not take in a slot is blended instead. */
 static _Bool compile_somehow(mu_material *material, mu_settings *settings, const mu_place *place, mu_error *error) {
-    uint32_t refused = MUSURF_NO_PARAM;
-    mu_error first = *error;
-    if (compile_all(material, settings, place, &refused, &first)) return 1;
-    if (refused == MUSURF_NO_PARAM || material->blend || !mu_settings_blend(settings, refused)) {
-        *error = first;
-        return 0;
+    for (;;) {
+        uint32_t refused = MUSURF_NO_PARAM;
+        mu_error first = *error;
+        if (compile_all(material, settings, place, &refused, &first)) return 1;
+        if (refused != MUSURF_NO_PARAM && material->blend) {
+            mu_blend_undo(material->blend, settings);
+            material->blend = NULL;
+        }
+        if (refused == MUSURF_NO_PARAM || !mu_settings_blend(settings, refused)) {
+            *error = first;
+            return 0;
+        }
     }
-    return compile_all(material, settings, place, NULL, error);
 }
 
 /* What draws directions is the renderer's to choose where the material does not say: it asks the plugin to measure. */
@@ -269,6 +280,13 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
 _Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, const mu_place *place,
                                  _Bool deforming, mu_error *error) {
     return read_material(material, plugins, place, deforming, 1, error);
+}
+
+mu_source *mu_material_source(const mu_material *material, size_t index) {
+    const size_t varying = material->varying ? material->varying->count : 0,
+                 blended = material->blend ? (size_t)material->blend->axes : 0;
+    if (index < varying) return material->varying->sources + index;
+    return index < varying + blended ? &material->blend->axis[index - varying].source : NULL;
 }
 
 void mu_material_free(mu_material *material) {

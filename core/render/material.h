@@ -37,7 +37,7 @@ typedef struct mu_material {
     musurf_plan plan;
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
     struct mu_varying *varying; /* parameters with sources; NULL: none */
-    struct mu_blend *blend;     /* a parameter between whose values materials are blended; `compiled` is its first */
+    struct mu_blend *blend;     /* parameters between whose values materials are blended; `compiled` is its first */
     uint64_t digest;      /* of grids and pictures among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the others go: M = J T transform */
     _Bool tension;        /* T transform is pushed through slots[0..3] at each hit: T of the mesh's deformation */
@@ -53,5 +53,8 @@ _Bool mu_material_read(mu_material *material, mu_plugins *plugins, const mu_plac
 _Bool mu_material_read_to_render(mu_material *material, mu_plugins *plugins, const mu_place *place,
                                  _Bool deforming, mu_error *error);
 void mu_material_free(mu_material *material);
+
+/* Its sources (source.h), blended ones last; NULL past the end. */
+struct mu_source *mu_material_source(const mu_material *material, size_t index);
 
 #endif

@@ -268,12 +268,13 @@ static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *
         return 1;
     }
     if (!mu_source_serves(p)) {
-        if (s->blended.param) {
+        if (s->blended_count == MU_BLENDED) {
             mu_source_free(source);
-            return mu_place_fail(place, error, "cannot vary too: of what the plugin wants constant %s varies already",
-                                 s->blended.param->name);
+            return mu_place_fail(place, error,
+                                 "cannot vary too: of what the plugin wants constant %s and %s vary already",
+                                 s->blended[0].param->name, s->blended[1].param->name);
         }
-        s->blended = *source;
+        s->blended[s->blended_count++] = *source;
         return 1;
     }
     if (!place_source(s, source, place, error)) {
@@ -290,10 +291,11 @@ static _Bool read_source(mu_settings *s, const musurf_param *p, const mu_place *
 _Bool mu_settings_blend(mu_settings *s, uint32_t param) {
     size_t i = 0;
     while (i < s->source_count && s->sources[i].param->id != param) i++;
-    if (i == s->source_count || s->blended.param || !mu_source_blends(s->sources[i].param)) return 0;
-    s->blended = s->sources[i];
+    if (i == s->source_count || s->blended_count == MU_BLENDED || !mu_source_blends(s->sources[i].param)) return 0;
+    const mu_source *blended = &s->blended[s->blended_count++];
+    s->blended[s->blended_count - 1] = s->sources[i];
     memmove(s->sources + i, s->sources + i + 1, (--s->source_count - i) * sizeof *s->sources);
-    musurf_setting *setting = mu_settings_find(s, s->blended.param);
+    musurf_setting *setting = mu_settings_find(s, blended->param);
     setting->source = MUSURF_CONSTANT;
     setting->values = s->values[setting - s->items];
     return 1;
@@ -345,7 +347,7 @@ _Bool mu_settings_read(mu_settings *settings, const musurf_material_type *type, 
 void mu_settings_free(mu_settings *settings) {
     for (size_t i = 0; settings->grids && i < settings->count; i++) free(settings->grids[i]);
     for (size_t i = 0; i < settings->source_count; i++) mu_source_free(settings->sources + i);
-    mu_source_free(&settings->blended);
+    for (int i = 0; i < settings->blended_count; i++) mu_source_free(settings->blended + i);
     free(settings->sources);
     free(settings->grids);
     free(settings->items);

@@ -15,7 +15,8 @@ typedef struct mu_settings {
     size_t count;
     mu_source *sources; /* of the settings in slots, in the order of these */
     size_t source_count;
-    mu_source blended; /* of a parameter that the plugin wants constant (blend.h); its param is NULL: there is none */
+    mu_source blended[MU_BLENDED]; /* of parameters that the plugin wants constant (blend.h) */
+    int blended_count;
 } mu_settings;
 
 /* Whether a number is in the parameter's range, and that in words. */
@@ -35,8 +36,8 @@ musurf_setting *mu_settings_find(const mu_settings *settings, const musurf_param
 /* Adds a setting with zeros for values; there must be none of this parameter yet. */
 musurf_setting *mu_settings_add(mu_settings *settings, const musurf_param *param);
 
-/* The source of a parameter that the plugin refuses in a slot becomes the blended one; false: it has none, or there is another
- * already. Its setting is a constant then, of values to be filled in. */
+/* The source of a parameter that the plugin refuses in a slot becomes a blended one; false: it has none, or as many as there may
+ * be are blended already. Its setting is a constant then, of values to be filled in. */
 _Bool mu_settings_blend(mu_settings *settings, uint32_t param);
 
 /* Fails at the place of parameter `name` in the object at `place`, or at the object if it is not given there.

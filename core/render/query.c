@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/render/blend.h"
-#include "core/render/varying.h"
+#include "core/render/material_settings.h"
 
 _Bool mu_query_cache_make(mu_query_cache *cache, mu_error *error) {
     *cache = (mu_query_cache){.plugins = mu_plugins_new()};
@@ -28,11 +27,10 @@ void mu_query_cache_free(mu_query_cache *cache) {
 }
 
 static _Bool find_probe(const mu_material *material, const mu_place *place, mu_probed *out, mu_error *error) {
-    if (material->varying || material->blend) {
-        const mu_source *source = material->blend ? &material->blend->source : material->varying->sources;
+    const mu_source *source = mu_material_source(material, 0);
+    if (source)
         return mu_settings_fail(place, source->param->name, error,
                                 "makes the material vary over the surface; here one point is looked at, so write its value");
-    }
     if (material->jacobian.map != MU_JACOBIAN_NONE) {
         const mu_place jacobian = mu_place_member(place, "jacobian");
         return mu_place_fail_key(&jacobian, error,

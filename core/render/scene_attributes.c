@@ -6,7 +6,7 @@
 
 #include "core/render/mesh.h"
 #include "core/render/scene_read.h"
-#include "core/render/varying.h"
+#include "core/render/material_settings.h"
 
 /* Number of the attribute in the scene's list; MU_ATTRIBUTES: there is no more room. */
 static uint32_t number_of(mu_scene *scene, const char *name) {
@@ -18,9 +18,8 @@ static uint32_t number_of(mu_scene *scene, const char *name) {
 
 static _Bool number_all(mu_scene *scene, mu_error *error) {
     for (uint32_t i = 0; i < scene->material_count; i++) {
-        mu_varying *varying = scene->materials[i].material.varying;
-        for (size_t k = 0; varying && k < varying->count; k++) {
-            mu_source *source = varying->sources + k;
+        mu_source *source;
+        for (size_t k = 0; (source = mu_material_source(&scene->materials[i].material, k)); k++) {
             for (int c = 0; c < source->count && source->kind == MU_SOURCE_ATTRIBUTE; c++) {
                 source->attribute[c] = number_of(scene, source->name[c]);
                 if (source->attribute[c] == MU_ATTRIBUTES)
@@ -50,9 +49,8 @@ static _Bool check_range(const mu_mesh *mesh, const mu_source *source, int numbe
 
 static _Bool read_of(mu_reader *reader, const mu_place *place, const mu_object *object, uint32_t material) {
     mu_scene *scene = reader->scene;
-    const mu_varying *varying = scene->materials[material].material.varying;
-    for (size_t k = 0; varying && k < varying->count; k++) {
-        const mu_source *source = varying->sources + k;
+    const mu_source *source;
+    for (size_t k = 0; (source = mu_material_source(&scene->materials[material].material, k)); k++) {
         for (int c = 0; c < source->count && source->kind == MU_SOURCE_ATTRIBUTE; c++) {
             mu_error why = {.text = ""};
             if (object->shape != MU_MESH)

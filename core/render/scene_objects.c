@@ -4,8 +4,7 @@
 #include <stdio.h>
 
 #include "core/render/scene_read.h"
-#include "core/render/blend.h"
-#include "core/render/varying.h"
+#include "core/render/source.h"
 
 /* Which shape the object is, from "shape" or "mesh"; checks its keys. */
 static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *object) {
@@ -39,13 +38,11 @@ static _Bool read_shape(mu_reader *reader, const mu_place *place, mu_object *obj
 static _Bool check_uvs(mu_reader *reader, const mu_place *place, const mu_object *object, uint32_t material,
                        const char *what) {
     const mu_scene *scene = reader->scene;
-    const mu_varying *varying = scene->materials[material].material.varying;
-    const _Bool maps = scene->materials[material].material.jacobian.map != MU_JACOBIAN_NONE;
-    if (maps && !what) what = "its \"jacobian\"";
-    for (size_t i = 0; varying && i < varying->count && !what; i++)
-        if (varying->sources[i].kind != MU_SOURCE_ATTRIBUTE) what = varying->sources[i].param->name;
-    if (scene->materials[material].material.blend && !what)
-        what = scene->materials[material].material.blend->source.param->name;
+    const mu_material *const of = &scene->materials[material].material;
+    const mu_source *source;
+    if (of->jacobian.map != MU_JACOBIAN_NONE && !what) what = "its \"jacobian\"";
+    for (size_t i = 0; !what && (source = mu_material_source(of, i)); i++)
+        if (source->kind != MU_SOURCE_ATTRIBUTE) what = source->param->name;
     if (object->shape != MU_MESH || scene->meshes[object->mesh].uvs || !what) return 1;
     return mu_place_fail(place, reader->error,
                          "%s needs texture coordinates, which the mesh \"%.60s\" has not",

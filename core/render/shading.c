@@ -131,9 +131,10 @@ void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *
     shading->map = material->varying ? material->varying->map : NULL;
     shading->compiled = material->compiled;
     if (material->blend) {
-        float footprint[6];
+        float footprint[6], attributes[MU_ATTRIBUTES] = {0};
         footprint_of(hit, wo, beam, footprint);
-        shading->compiled = mu_blend_at(material->blend, footprint);
+        attributes_at(scene, hit, attributes);
+        shading->compiled = mu_blend_at(material->blend, footprint, attributes);
     }
 }
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/render/plugin.h"
+#include "core/render/material_settings.h"
 #include "core/render/source_picture.h"
 
 static _Bool is_angle(const musurf_param *param) {
@@ -81,8 +81,20 @@ static _Bool read_picture(mu_source *source, const mu_place *place, const char *
            mu_source_picture(&source->picture, &file, &request, source->placement.wrap, error);
 }
 
+static _Bool read_between(mu_source *source, const mu_place *place, mu_error *error) {
+    double *const between = source->between;
+    char range[160];
+    if (!mu_place_numbers(place, 2, -DBL_MAX, DBL_MAX, between, error)) return 0;
+    mu_param_range(source->param, range, sizeof range);
+    for (int i = 0; i < 2; i++)
+        if (!mu_param_allows(source->param, between[i]))
+            return mu_place_fail(place, error, "is [%g, %g]; both must be %s", between[0], between[1], range);
+    return between[0] <= between[1] ||
+           mu_place_fail(place, error, "is [%g, %g]; the second must not be less", between[0], between[1]);
+}
+
 static _Bool read_attribute(mu_source *source, const mu_place *place, mu_error *error) {
-    const mu_place names = mu_place_member(place, "attribute");
+    const mu_place names = mu_place_member(place, "attribute"), between = mu_place_member(place, "between");
     const char *text[MU_SOURCE_NUMBERS];
     if (!mu_source_texts(&names, source->count, text, error)) return 0;
     for (int i = 0; i < source->count; i++) {
@@ -90,7 +102,8 @@ static _Bool read_attribute(mu_source *source, const mu_place *place, mu_error *
             return mu_place_fail(&names, error, "must be a name of 1 to %d characters", MU_ATTRIBUTE_NAME - 1);
         snprintf(source->name[i], sizeof source->name[i], "%s", text[i]);
     }
-    return 1;
+    source->between[0] = -DBL_MAX, source->between[1] = DBL_MAX;
+    return !between.value || read_between(source, &between, error);
 }
 
 static _Bool read_expression(mu_source *source, const mu_place *place, mu_error *error) {
@@ -110,9 +123,9 @@ static _Bool read_expression(mu_source *source, const mu_place *place, mu_error 
 _Bool mu_source_read(mu_source *source, const musurf_param *param, const mu_place *place, mu_error *error) {
     static const char *const any[] = {"texture",  "direction_map", "attribute", "expression",
                                       "channels", "range",         "wrap",      "colour_space",
-                                      "scale",    "offset",        "filter",    NULL};
-    static const char *const of_attribute[] = {"attribute", NULL}, *const of_expression[] = {"expression",
-                                                                                             NULL};
+                                      "scale",    "offset",        "filter",    "between", NULL};
+    static const char *const of_attribute[] = {"attribute", "between", NULL},
+                      *const of_expression[] = {"expression", NULL};
     *source = (mu_source){.param = param, .count = (int)mu_kind_numbers(param->kind)};
     if (!mu_place_only(place, any, error)) return 0;
     if (!mu_source_serves(param) && !mu_source_blends(param))
@@ -161,7 +174,7 @@ _Bool mu_source_is_constant(const mu_source *source, double *values) {
     return 1;
 }
 
-json_t *mu_source_schema(const musurf_param *param) {
+json_t *mu_source_schema(const musurf_param *param, json_t *number) {
     const int count = (int)mu_kind_numbers(param->kind);
     json_t *texts = json_pack("{s:s, s:{s:s}, s:i, s:i}", "type", "array", "items", "type", "string",
                               "minItems", count, "maxItems", count);
@@ -186,11 +199,11 @@ json_t *mu_source_schema(const musurf_param *param) {
                                                "additionalProperties", 0));
     }
     json_decref(placed);
-    static const char *const pointwise[] = {"attribute", "expression"};
-    for (int k = 0; k < 2; k++)
-        json_array_append_new(kinds, json_pack("{s:s, s:{s:O}, s:[s], s:b}", "type", "object", "properties",
-                                               pointwise[k], text, "required", pointwise[k],
-                                               "additionalProperties", 0));
+    json_array_append_new(kinds, json_pack("{s:s, s:{s:O, s:{s:s, s:o, s:i, s:i}}, s:[s], s:b}", "type", "object",
+                                           "properties", "attribute", text, "between", "type", "array", "items", number,
+                                           "minItems", 2, "maxItems", 2, "required", "attribute", "additionalProperties", 0));
+    json_array_append_new(kinds, json_pack("{s:s, s:{s:O}, s:[s], s:b}", "type", "object", "properties",
+                                           "expression", text, "required", "expression", "additionalProperties", 0));
     json_decref(text);
     return kinds;
 }

@@ -9,7 +9,8 @@
  *                                     picture mean; and its placement
  *     {"direction_map": "d.exr"}      of an angle: pictures of vectors, whose direction it is; "range" of a whole-number
  *                                     file would be [-1, 1]; (0, 0) is no direction and gives 0
- *     {"attribute": "age"}            numbers of the mesh's vertices; of a matrix ["m00", "m01", "m10", "m11"]
+ *     {"attribute": "age"}            numbers of the mesh's vertices; of a matrix ["m00", "m01", "m10", "m11"]; with
+ *                                     "between": [least, most], what lies beyond takes the nearer of these
  *     {"expression": "0.1 + 0.2*u"}   formulas of (u, v) (expression.h), one for each number
  *
  * Placement: a picture lies at (u, v) * "scale" + "offset" of its own square, beyond which "wrap" (repeat, clamp, mirror)
@@ -23,7 +24,7 @@
 #include "core/render/mipmap.h"
 #include "plugin/musurf_plugin.h"
 
-enum { MU_SOURCE_NUMBERS = 4, MU_ATTRIBUTE_NAME = 64 };
+enum { MU_SOURCE_NUMBERS = 4, MU_ATTRIBUTE_NAME = 64, MU_BLENDED = 2 };
 
 typedef struct mu_placement {
     mu_wrap wrap;
@@ -40,6 +41,7 @@ typedef struct mu_source {
     mu_placement placement;
     char name[MU_SOURCE_NUMBERS][MU_ATTRIBUTE_NAME]; /* MU_SOURCE_ATTRIBUTE */
     uint32_t attribute[MU_SOURCE_NUMBERS];           /* of the scene's list */
+    double between[2];                               /* MU_SOURCE_ATTRIBUTE; without: all that is finite */
     mu_expression *formula;                          /* MU_SOURCE_EXPRESSION: `count` */
 } mu_source;
 
@@ -52,8 +54,14 @@ _Bool mu_source_read(mu_source *source, const musurf_param *param, const mu_plac
 void mu_source_free(mu_source *source);
 /* Is it a picture of equal texels? Then it is a constant. */
 _Bool mu_source_is_constant(const mu_source *source, double *values);
-/* What else may stand for the parameter's value. */
-json_t *mu_source_schema(const musurf_param *param);
+/* What else may stand for the parameter's value; takes `number`, the schema of one number of it. */
+json_t *mu_source_schema(const musurf_param *param, json_t *number);
+
+/* [any] Number k from the scene's list of attributes at a hit; NULL: all of them 0. */
+static inline double mu_source_of_vertices(const mu_source *source, int k, const float *attributes) {
+    const double value = attributes ? (double)attributes[source->attribute[k]] : 0;
+    return value < source->between[0] ? source->between[0] : value > source->between[1] ? source->between[1] : value;
+}
 
 static inline _Bool mu_source_is_picture(const mu_source *source) {
     return source->kind == MU_SOURCE_TEXTURE || source->kind == MU_SOURCE_DIRECTION;

@@ -14,7 +14,7 @@ static void pointwise(const mu_varying *v, const float uv[2], const float *attri
         for (int k = 0; k < source->count; k++) {
             float *const out = slots + source->slot + k;
             if (source->kind == MU_SOURCE_ATTRIBUTE)
-                *out = attributes ? attributes[source->attribute[k]] : 0;
+                *out = (float)mu_source_of_vertices(source, k, attributes);
             else if (source->kind == MU_SOURCE_EXPRESSION)
                 *out = (float)mu_expression_at(source->formula + k, (double)uv[0], (double)uv[1]).value;
         }

@@ -13,6 +13,7 @@ import re
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -339,6 +340,16 @@ class Pose(unittest.TestCase):
                 self.assertEqual((done.returncode, done.out), (2, ""))
                 self.assertRegex(done.err, pattern)
                 self.assertEqual(done.err.count("\n"), 1)
+
+
+    def test_turns_that_are_no_numbers(self):
+        """A rotation of NaN is refused as a place of NaN is, not taken for none."""
+        broken = self.folder / "broken.glb"
+        with unittest.mock.patch.dict(globals(), TURNS=np.full_like(TURNS, np.nan)):
+            broken.write_bytes(glb())
+        done = musurf("tension", broken, "--pose", '{"animation": "Wave", "time": 0.5}')
+        self.assertEqual((done.returncode, done.out), (2, ""))
+        self.assertRegex(done.err, "broken.glb: vertex 0 has a position of .*nan.*must be within")
 
 
 if __name__ == "__main__":

@@ -108,15 +108,16 @@ class Wedge(unittest.TestCase):
         for arguments in ((), ("--vary", "gamma=1"), ("--vary", "gamma=1", "-o", "/nowhere/s.exr"),
                           ("--vary", "gamma=1", "--cells", self.scene), (self.scene, "--vary", "gamma=1")):
             self.assertEqual(self.wedge(*arguments).returncode, 2)
+        sky = self.folder / "0002.exr"
         for arguments, words in ((("-o", self.folder / "s.png"), "ends in .exr"), (("--png", self.scene), "ends in .png"),
-                                 (("-o", self.folder / "sky.exr"), "of which the scene is made")):
-            self.scene.write_text(json.dumps(dict(SCENE, lights=[{"type": "environment", "image": "sky.exr"}])))
-            exr.write(self.folder / "sky.exr", {c: np.ones((2, 4)) for c in "RGB"})
-            before = (self.folder / "sky.exr").read_bytes(), self.scene.read_text()
+                                 (("-o", sky), "of which the scene is made"), (("--cells", self.folder), "of which the scene is made")):
+            self.scene.write_text(json.dumps(dict(SCENE, lights=[{"type": "environment", "image": sky.name}])))
+            exr.write(sky, {c: np.ones((2, 4)) for c in "RGB"})
+            before = sky.read_bytes(), self.scene.read_text()
             done = self.wedge("--vary", "gamma=1:2", *arguments)
             self.assertEqual((done.returncode, done.err.count("\n")), (2, 1), done.err)
             self.assertIn(words, done.err)
-            self.assertEqual(((self.folder / "sky.exr").read_bytes(), self.scene.read_text()), before)
+            self.assertEqual((sky.read_bytes(), self.scene.read_text()), before)
 
     def test_examples_of_the_help(self):
         """They are of a scene that is here, and mean something in it."""

@@ -114,14 +114,20 @@ static void describe(const mu_wedge *wedge, const size_t *which, const char *bet
     }
 }
 
+/* To be freed; NULL: no memory. */
+static char *cell_file(const mu_wedge *wedge, size_t cell) {
+    const size_t room = strlen(wedge->cells) + 32;
+    char *const file = malloc(room);
+    if (file) snprintf(file, room, "%s/%04zu.exr", wedge->cells, cell + 1);
+    return file;
+}
+
 static _Bool write_cell(const mu_wedge *wedge, size_t cell, const size_t *which, const mu_scene *scene,
                         const mu_film *film, mu_error *error) {
     char values[512];
     describe(wedge, which, ", ", values, sizeof values);
-    const size_t room = strlen(wedge->cells) + 32;
-    char *const file = malloc(room);
+    char *const file = cell_file(wedge, cell);
     if (!file) return mu_fail(error, "out of memory");
-    snprintf(file, room, "%s/%04zu.exr", wedge->cells, cell + 1);
     uint32_t least, most;
     mu_film_samples(film, &least, &most);
     const mu_image_info head = {.scene_file = wedge->render.scene,
@@ -197,7 +203,6 @@ static int complain(mu_wedge *wedge, const mu_error *error, int code) {
 
 /* Every cell is read before the first is rendered: an error in the last shall not cost the others. */
 static _Bool try_all(mu_wedge *wedge, mu_error *error) {
-    const char *const outputs[] = {wedge->render.output, wedge->render.png};
     for (size_t cell = 0; cell < wedge->count; ++cell) {
         size_t which[MU_VARY_MOST];
         mu_scene scene;
@@ -205,7 +210,11 @@ static _Bool try_all(mu_wedge *wedge, mu_error *error) {
         if (!read_cell(wedge, which, &scene, error)) return 0;
         const mu_film_settings film = scene.film;
         mu_scene_free(&scene);
-        if (!mu_inputs_keep(&wedge->document, outputs, sizeof outputs / sizeof *outputs, error)) return 0;
+        char *const file = wedge->cells ? cell_file(wedge, cell) : NULL;
+        const char *const outputs[] = {wedge->render.output, wedge->render.png, file};
+        const _Bool kept = mu_inputs_keep(&wedge->document, outputs, sizeof outputs / sizeof *outputs, error);
+        free(file);
+        if (!kept) return 0;
         if (cell && (film.width != wedge->sheet.cell_width || film.height != wedge->sheet.cell_height))
             return mu_fail(error, "cells of a sheet must have one size; --size gives it");
         if (!cell) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/render/image.h"
+#include "core/render/srgb.h"
 
 double mu_tone_curve(double x) {
     const double knee = 0.8, room = 1 - knee;
@@ -12,6 +13,6 @@ double mu_tone_curve(double x) {
 }
 
 uint8_t mu_tone_srgb8(double linear) {
-    const double code = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    const double code = mu_srgb_from_linear(linear);
     return code <= 0 ? 0 : code >= 1 ? 255 : (uint8_t)(255 * code + 0.5);
 }

@@ -6,7 +6,6 @@
  */
 #include <OpenImageIO/imageio.h>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
@@ -15,6 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
+
+#include "core/render/srgb.h"
 
 namespace {
 
@@ -48,11 +49,6 @@ class Silence {
   private:
     int stderr_ = -1;
 };
-
-/* IEC 61966-2-1 */
-float linear_from_srgb(float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
 
 /* A flat picture of a size that can be believed; null and a message otherwise. */
 std::unique_ptr<OIIO::ImageInput> open_picture(const char *file, const OIIO::ImageSpec *hints, char *message, size_t size) {
@@ -96,7 +92,7 @@ float *read(const char *file, int *width, int *height, char *message, size_t siz
     const bool srgb =
         spec.format.is_floating_point() ? false : spec.get_string_attribute("oiio:ColorSpace") != "Linear";
     for (long long i = srgb ? 0 : count * channels; i < count * channels; i++)
-        pixels[i] = linear_from_srgb(pixels[i]);
+        pixels[i] = (float)mu_linear_from_srgb((double)pixels[i]);
     for (long long i = channels == 1 ? count : 0; i-- > 0;)
         pixels[3 * i] = pixels[3 * i + 1] = pixels[3 * i + 2] = pixels[i];
     *width = spec.width;

@@ -46,7 +46,7 @@ static void vector_at(const struct aiVectorKey *keys, unsigned count, double tic
     out[2] = (1 - t) * (double)p->z + t * (double)q->z;
 }
 
-/* Along the shortest arc; unit. */
+/* Along the shortest arc; unit. What is not finite stays so, and is found when vertices are checked. */
 static void rotation_at(const struct aiQuatKey *keys, unsigned count, double ticks, double out[4]) {
     unsigned a, b;
     const double none[4] = {1, 0, 0, 0};
@@ -63,11 +63,11 @@ static void rotation_at(const struct aiQuatKey *keys, unsigned count, double tic
         apart += pow(from[k] - side * to[k], 2), together += pow(from[k] + side * to[k], 2);
     const double angle = 2 * atan2(sqrt(apart), sqrt(together)), sine = sin(angle);
     for (int k = 0; k < 4; k++) {
-        out[k] = sine > 1e-9 ? (sin((1 - t) * angle) * from[k] + sin(t * angle) * side * to[k]) / sine
+        out[k] = !(sine <= 1e-9) ? (sin((1 - t) * angle) * from[k] + sin(t * angle) * side * to[k]) / sine
                              : (1 - t) * from[k] + t * side * to[k];
         length += out[k] * out[k];
     }
-    for (int k = 0; k < 4; k++) out[k] = length > 0 ? out[k] / sqrt(length) : none[k];
+    for (int k = 0; k < 4; k++) out[k] = length == 0 ? none[k] : out[k] / sqrt(length);
 }
 
 static mu_affine64 channel_at(const struct aiNodeAnim *channel, double ticks) {

@@ -9,18 +9,14 @@
 
 #include "core/render/image_read.h"
 #include "core/render/material_settings.h"
-
-/* IEC 61966-2-1 */
-static double linear_from_srgb(double c) {
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
+#include "core/render/srgb.h"
 
 /* Ranges are applied in double, and not at all where they are none: what a file holds is what is meant. */
 static _Bool convert(float *values, size_t count, const mu_picture_request *r, size_t *bad) {
     const _Bool placed = r->range[0] != 0 || r->range[1] != 1;
     for (size_t i = 0; i < count; i++) {
         double x = (double)values[i];
-        if (r->srgb) x = linear_from_srgb(x);
+        if (r->srgb) x = mu_linear_from_srgb(x);
         if (placed) x = r->range[0] + x * (r->range[1] - r->range[0]);
         values[i] = (float)x;
         if (isfinite(values[i]) && (!r->param || mu_param_allows(r->param, x))) continue;

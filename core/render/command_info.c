@@ -9,6 +9,7 @@
 #include "core/render/features.h"
 #include "core/render/info.h"
 #include "core/render/options.h"
+#include "core/render/scene.h"
 
 static const mu_option options[] = {{"json", NULL, "everything as one JSON object"},
                                     {"schema", NULL, "the JSON Schema of MATERIAL's objects in scene files"},
@@ -106,6 +107,9 @@ static void print_text(const json_t *all) {
            text_of(material, "doc"));
     json_array_foreach(json_object_get(material, "parameters"), i, value) print_param(value);
     const char *name;
+    fputs("\nintegrators (render --integrator):", stdout);
+    json_array_foreach(json_object_get(all, "integrators"), i, value) printf(" %s", json_string_value(value));
+    putchar('\n');
     printf("\nwhat a scene may need, or leave out (render --explain):\n");
     json_object_foreach(json_object_get(all, "features"), name, value)
         printf("  %-24s%s\n", name, json_string_value(value));
@@ -122,11 +126,13 @@ static json_t *collect(const musurf_plugin *plugin, const char *file, const musu
     json_t *materials = json_array();
     for (size_t i = 0; i < plugin->type_count; i++)
         json_array_append_new(materials, json_string(plugin->types[i]->id));
-    return json_pack("{s:o, s:{s:s, s:s, s:s, s:i, s:s, s:o}, s:{s:s, s:s, s:s, s:o}, s:o}", "build",
+    json_t *integrators = json_array();
+    for (size_t i = 0; mu_integrators[i]; i++) json_array_append_new(integrators, json_string(mu_integrators[i]));
+    return json_pack("{s:o, s:{s:s, s:s, s:s, s:i, s:s, s:o}, s:{s:s, s:s, s:s, s:o}, s:o, s:o}", "build",
                      mu_info_build(), "plugin", "name", plugin->name, "version", plugin->version, "license",
                      plugin->license, "abi_minor", (int)plugin->abi_minor, "file", file, "materials",
                      materials, "material", "id", type->id, "label", type->label, "doc", type->doc,
-                     "parameters", mu_info_params(type), "features", features());
+                     "parameters", mu_info_params(type), "features", features(), "integrators", integrators);
 }
 
 static int show(mu_plugins *plugins, const char *id, _Bool as_json, _Bool as_schema) {

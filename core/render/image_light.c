@@ -74,6 +74,7 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         if (!bright) continue;
         mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
         const size_t n = mu_ibl_reads(light->technique, &lobe, shading.wo, &light->settings, reads);
+        out[i].reads = (uint32_t)n;
         mu_ibl_batch batch;
         batch.count = n;
         for (size_t k = 0; k < n; k++) {
@@ -173,16 +174,19 @@ static _Bool lights_around(const mu_scene *scene, mu_error *error) {
     return 1;
 }
 
+void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *settings) {
+    light->technique = settings->technique;
+    light->settings = mu_ibl_settings_default_f();
+    light->settings.samples = settings->reads;
+}
+
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error) {
-    const mu_integrator_settings *settings = &tracer->scene->integrator;
     mu_image_light *light = calloc(1, sizeof *light);
     if (!light) {
         mu_fail(error, "not enough memory");
         return NULL;
     }
-    light->technique = settings->technique;
-    light->settings = mu_ibl_settings_default_f();
-    light->settings.samples = settings->reads;
+    mu_image_light_choose(light, &tracer->scene->integrator);
     if (lights_around(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
         (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error)))
         return light;

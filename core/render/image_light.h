@@ -18,6 +18,8 @@ typedef struct mu_image_light mu_image_light;
 /* For a tracer whose scene has a technique. NULL on failure: a light that is nowhere around, or a material whose lobe is not
  * known, refracts or is blended. */
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error);
+/* Another technique, of a light that was made: nothing is made anew. Not while others use it. */
+void mu_image_light_choose(mu_image_light *image_light, const mu_integrator_settings *settings);
 void mu_image_light_free(mu_image_light *image_light);
 
 /* [any] As mu_integrator_row, of tracer->image_light. */

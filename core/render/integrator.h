@@ -27,6 +27,7 @@ typedef struct mu_radiance {
     float albedo[3];  /* at the first hit; 0 where the ray escapes */
     float normal[3];  /* world space, shading normal of the first hit */
     uint32_t rays;    /* traced, shadow rays included */
+    uint32_t reads;   /* of an environment filtered in advance (image_light.h) */
     uint32_t refused; /* contributions left out because they were not finite or negative: always 0, or it is a
                          bug */
     _Bool hit;        /* the camera ray hit something: alpha */

@@ -168,6 +168,23 @@ class Host(unittest.TestCase):
                 self.assertTrue(np.all(values(bsdf, wo, wi)[0] == wanted[0]))
             self.assertTrue(np.all(values(changed, wo, wi)[0] == values(load(**{**SKEW, "gamma": 3.0}), wo, wi)[0]))
 
+    def test_colors_and_vectors_as_mitsuba_writes_them(self):
+        wo, wi = directions(100, 24), directions(100, 25)
+        red = [0.9, 0.5, 0.2]
+        plain = dict(ndf="ggx", alpha=0.3, fresnel="schlick")
+        wanted = values(load(**plain, fresnel_schlick="0.9 0.5 0.2"), wo, wi)[0]
+        xml = """<bsdf version="3.0.0" type="musurf"><string name="fresnel" value="schlick"/><float name="alpha" value="0.3"/>
+            <rgb name="fresnel_schlick" value="0.9 0.5 0.2"/></bsdf>"""
+        for bsdf in (load(**plain, fresnel_schlick={"type": "rgb", "value": red}), load(**plain, fresnel_schlick=red), mi.load_string(xml),
+                     load(**plain, fresnel_schlick=mi.Color3f(*red)), load(**plain, fresnel_schlick=np.array(red))):
+            self.agree(values(bsdf, wo, wi)[0], wanted, 1e-6)  # colors of Mitsuba's may be floats
+        grey = values(load(**plain, fresnel_schlick=0.5), wo, wi)[0]
+        self.agree(values(load(**plain, fresnel_schlick={"type": "spectrum", "value": 0.5}), wo, wi)[0], grey, 1e-6)
+        tilted = values(load(ndf="ggx", alpha=0.3, tilt="0.2 -0.1"), wo, wi)[0]
+        self.agree(values(load(ndf="ggx", alpha=0.3, tilt=mi.ScalarPoint2f(0.2, -0.1)), wo, wi)[0], tilted, 1e-5)
+        skewed = values(load(ndf="ggx", alpha=0.3, transform="1 2 0 1"), wo, wi)[0]
+        self.agree(values(load(ndf="ggx", alpha=0.3, transform=mi.Matrix2f(1, 2, 0, 1)), wo, wi)[0], skewed, 1e-6)
+
     def test_map_per_point_from_textures(self):
         """A bitmap for one entry of M, a number for the others: at each texel the same as the constant M."""
         wo, wi = directions(4, 12), directions(4, 13)

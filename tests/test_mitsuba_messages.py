@@ -64,6 +64,11 @@ class Messages(unittest.TestCase):
         self.musurf("gamma: belongs to ndf \"gtr\"", gamma=1.5)
         self.musurf("histogram: is a grid of numbers, which a material file can give", histogram=1)
         self.musurf("takes numbers, a word or a texture, not a", alpha={"type": "diffuse"})
+        self.musurf("fresnel_schlick: takes red, green and blue, not a spectrum", fresnel="schlick",
+                    fresnel_schlick={"type": "spectrum", "value": [(400, 0.1), (700, 0.9)]})
+        self.musurf("alpha: takes 1 number, not", alpha={"type": "rgb", "value": [0.1, 0.2, 0.3]})
+        for key in ("material", "file", "plugin"):
+            self.musurf(f"{key}: takes text, not '3'", **{key: 3})
 
     def test_what_the_host_cannot_feed(self):
         checkers = {"type": "checkerboard"}

@@ -115,7 +115,7 @@ def make(mi):
                 for name in self.edits:
                     p, new = self.given.table.by_name[name], self.numbers(name)
                     if len(new) != p.count:
-                        raise PropertyError(f"{p.key}: takes {p.count} numbers, not {len(new)}")
+                        raise PropertyError(f"{p.key}: takes {p.count} number{'s' if p.count > 1 else ''}, not {len(new)}")
                     if new != [float(np.float32(x)) for x in self.given.values.get(name) or p.initial[:p.count]]:
                         values[name] = new
                 if values == self.given.values:

@@ -46,8 +46,14 @@ def numbers_of(p, value):
             return [float(word) for word in words]
         except ValueError:
             return None
+    if isinstance(value, dr.ArrayBase):  # colors and vectors; every array of Dr.Jit has a "matrix" to offer, as transforms have
+        return np.array(value, dtype=float).ravel().tolist()
     if hasattr(value, "matrix"):
         return linear_part(value.matrix, p)
+    if hasattr(value, "wavelengths"):
+        if not value.is_uniform():
+            raise PropertyError(f"{p.key}: takes red, green and blue, not a spectrum over wavelengths")
+        return [float(value.values[0])]
     try:
         return np.array(value, dtype=float).ravel().tolist()
     except (TypeError, ValueError):
@@ -149,6 +155,9 @@ class Properties:
 
 def read(mi, props, open_type):
     """(type pointer, Properties) of the properties of a BSDF; `open_type(name, path)` finds the plugin."""
+    for key in OWN:
+        if not isinstance(props.get(key, ""), str):
+            raise PropertyError(f"{key}: takes text, not {str(props[key])[:60]!r}")
     path = props.get("file", None)
     document = material_file.read(resolve(mi, path)) if path is not None else None
     name = props.get("material", None)

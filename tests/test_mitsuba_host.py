@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import mitsuba_host
 
@@ -151,6 +152,23 @@ class Host(unittest.TestCase):
         finally:
             wavefront.THREADS = before
         self.assertTrue(np.all(alone[0] == together[0]) and np.all(alone[1] == together[1]))
+
+    def test_no_more_threads_than_mitsuba_s(self):
+        from musurf_mitsuba import wavefront
+        before, found = dr.thread_count(), []
+        original = wavefront.describe
+
+        def describe(*arguments):
+            found.append(original(*arguments))
+            return found[-1]
+
+        try:
+            dr.set_thread_count(3)
+            with unittest.mock.patch.object(wavefront, "describe", describe):
+                values(load(**SKEW), directions(10, 8), directions(10, 9))
+        finally:
+            dr.set_thread_count(before)
+        self.assertEqual([w.threads for w in found], [3])
 
     def test_parameters_from_everywhere(self):
         wo, wi = directions(200, 10), directions(200, 11)

@@ -6,14 +6,13 @@ the plugin answers is written into arrays that Dr.Jit made. No ray is touched by
 Arrays that are still recorded are evaluated here, all at once; inside a symbolic loop or call there are no values yet, and
 nothing can be shaded: is_symbolic() tells."""
 import ctypes
-import os
 
 import drjit as dr
 
 from . import abi
 from .plugins import PluginError, find, open_library
 
-THREADS = os.cpu_count() or 1
+THREADS = 0  # at most; 0: as many as Dr.Jit's own
 
 
 def library():
@@ -70,7 +69,7 @@ def outputs(Float, count, number):
 def describe(material, arrays, count, wo, active, slots, mode, lobes):
     w = abi.Wavefront(type=material.type, material=material.handle, count=count, wo=arrays.columns(wo), slots=None,
                       closure_bytes=material.plan.closure_bytes, closure_alignment=material.plan.closure_alignment, mode=mode,
-                      lobes=lobes, threads=THREADS)
+                      lobes=lobes, threads=THREADS or max(1, dr.thread_count()))
     w.active, w.active_step = arrays.memory(active)
     if slots:
         columns = arrays.columns(slots)

@@ -211,6 +211,16 @@ class BadScenes(unittest.TestCase):
         self.assertEqual(len(warnings), 1, done.err)
         self.assertRegex(warnings[0], r"scene\.json:17:\d+: \$\.lights\[0\]\.image: .*cut\.exr is missing")
 
+    def test_a_mesh_without_texture_coordinates_has_no_direction(self):
+        """Said once for each mesh, and only where a material asks for one."""
+        tile = '{"mesh": "tile", "material": "clay", "two_sided": true}'
+        for count in (0, 2):
+            done = self.render(GOOD.replace(tile, ", ".join([tile] + count * [tile.replace("clay", "metal")])))
+            self.assertEqual(done.returncode, 0, done.err)
+            warnings = [line for line in done.err.splitlines() if "warning" in line]
+            self.assertEqual(len(warnings), min(count, 1), done.err)
+        self.assertRegex(warnings[0], r'scene\.json:14:\d+: \$\.objects\[3\]: its material has a direction, and the mesh "tile" no texture coordinates')
+
     def test_brackets_without_end(self):
         for text in (b"[" * 100_000_000, b"[" * 1_000_000, b'{"objects":' * 100_000):
             error = self.refused(text)

@@ -186,6 +186,18 @@ static _Bool has_direction(const mu_scene *scene, uint32_t material) {
     return (scene->materials[material].material.plan.needs & MUSURF_NEEDS_TANGENT) != 0;
 }
 
+/* Once for a mesh: mesh_tangents.c has to choose. */
+static void warn_of_choice(const mu_reader *reader, uint32_t index, const mu_mesh *mesh) {
+    const mu_place objects = mu_place_member(&reader->root, "objects"), place = mu_place_element(&objects, index);
+    char text[192];
+    if (mesh->uvs || mesh->tangents) return;
+    snprintf(text, sizeof text,
+             "its material has a direction, and the mesh \"%.60s\" no texture coordinates to take it from; it is as if "
+             "brushed along the mesh's x axis",
+             mesh->name);
+    mu_scene_warn(reader, &place, text);
+}
+
 _Bool mu_make_scene_tangents(mu_reader *reader) {
     mu_scene *scene = reader->scene;
     for (uint32_t i = 0; i < scene->object_count; ++i) {
@@ -194,6 +206,7 @@ _Bool mu_make_scene_tangents(mu_reader *reader) {
         if (!has_direction(scene, object->material) &&
             !(object->grid.lines && has_direction(scene, object->grid.material)))
             continue;
+        warn_of_choice(reader, i, &scene->meshes[object->mesh]);
         if (!mu_mesh_make_tangents(&scene->meshes[object->mesh], reader->error)) return 0;
     }
     return 1;

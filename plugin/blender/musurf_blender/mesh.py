@@ -21,7 +21,9 @@ def corner_normals(mesh):
     if hasattr(mesh, "corner_normals"):  # from Blender 4.1 on
         return floats(mesh.corner_normals, "vector", 3)
     mesh.calc_normals_split()
-    return floats(mesh.loops, "normal", 3)
+    found = floats(mesh.loops, "normal", 3)
+    mesh.free_normals_split()
+    return found
 
 
 def texture_coordinates(mesh):
@@ -39,6 +41,24 @@ class Shape:
         self.first, self.total = integers(mesh.polygons, "loop_start"), integers(mesh.polygons, "loop_total")
         self.slot = integers(mesh.polygons, "material_index")
         self.normals, self.uvs = corner_normals(mesh), texture_coordinates(mesh)
+        self.solid = self.with_area()
+
+    def with_area(self):
+        """Whether each face has an area: what the renderer calls a flat triangle, of twice the area at most 2^-23 of its longest edge squared, leaves out
+        none of these. A face of n corners is n - 2 triangles, one of which has its share of the area; its edges are at most twice as long as its
+        farthest corner is away from the first, and the 2 more is for sums in floats."""
+        if len(self.first) == 0:
+            return np.zeros(0, dtype=bool)
+        corner = np.arange(len(self.vertex))
+        face = np.repeat(np.arange(len(self.first)), self.total)
+        corner = self.first[face] + (corner - np.repeat(np.cumsum(self.total) - self.total, self.total))
+        following = np.where(corner + 1 < (self.first + self.total)[face], corner + 1, self.first[face])
+        origin = self.positions[self.vertex[self.first[face]]].astype(float)
+        here, there = self.positions[self.vertex[corner]] - origin, self.positions[self.vertex[following]] - origin
+        twice, reach = np.zeros((len(self.first), 3)), np.zeros(len(self.first))
+        np.add.at(twice, face, np.cross(here, there))
+        np.maximum.at(reach, face, (here ** 2).sum(axis=1))
+        return np.linalg.norm(twice, axis=1) > (self.total - 2) * 2.0 ** -22 * 4 * reach
 
     def same_faces(self, other):
         return (len(self.positions) == len(other.positions) and np.array_equal(self.vertex, other.vertex)

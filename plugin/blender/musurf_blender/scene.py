@@ -7,10 +7,11 @@ import json
 import os
 
 import bpy
+import numpy as np
 
 from . import material, mesh, rest, surroundings
 
-SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+NOT_KNOWN = {"VOLUME", "HAIR", "CURVES", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}
 
 
 def absolute(path, owner):
@@ -22,6 +23,7 @@ class Export:
     def __init__(self, depsgraph, folder, say):
         self.depsgraph, self.folder, self.said, self.tell = depsgraph, folder, set(), say
         self.materials, self.meshes, self.objects, self.lights, self.shapes = {}, {}, [], [], {}
+        self.names = set()
 
     def say(self, text):
         if text not in self.said:
@@ -32,8 +34,11 @@ class Export:
 
     def path_of(self, image):
         """The file of an image; of one that is packed, what is packed, written out. None: it has none."""
+        if image.is_dirty:
+            self.say(f"the image \"{image.name}\" has been painted on since it was saved: what was saved is rendered")
         if image.packed_file:
-            path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}-{os.path.basename(image.filepath) or image.name}")
+            name = os.path.basename(image.filepath) or image.name.replace(os.sep, "-")
+            path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}-{name}")
             with open(path, "wb") as file:
                 file.write(image.packed_file.data)
             return path
@@ -66,20 +71,41 @@ class Export:
 
     # ------------------------------------------------------------------------------------------------- objects
 
-    def shape(self, evaluated):
-        """(Shape, its rest positions or None) of an evaluated object, once for all its instances."""
-        found = self.shapes.get(evaluated.name_full)
-        if found is None:
-            data = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=self.depsgraph)
-            try:
-                found = (mesh.Shape(data), None) if data and len(data.polygons) else (None, None)
-            finally:
+    def shape(self, instance):
+        """(Shape, its rest positions or None, a name) of what is instanced, once for all its instances. An object may be several meshes: its own, and what
+        its geometry nodes instance, under its name."""
+        evaluated = instance.object
+        key = (evaluated.name_full, evaluated.data.as_pointer())
+        if key not in self.shapes:
+            name = key[0]
+            while name in self.names:
+                name += "'"
+            self.names.add(name)
+            self.shapes[key] = (*self.evaluate(instance), name)
+        return self.shapes[key]
+
+    def evaluate(self, instance):
+        """(Shape, its rest positions or None); (None, None) if there is nothing to be seen."""
+        evaluated, original = instance.object, instance.object.original
+        # to_mesh() is for objects; what only stands for one has its mesh already, and ends the process over to_mesh()
+        own = not instance.is_instance
+        data = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=self.depsgraph) if own else evaluated.data
+        try:
+            shape = mesh.Shape(data) if data and len(data.polygons) else None
+        finally:
+            if own:
                 evaluated.to_mesh_clear()
-            original = evaluated.original
-            if found[0] and original.musurf.tension:
-                found = (found[0], self.at_rest(original, found[0]))
-            self.shapes[evaluated.name_full] = found
-        return found
+        if not shape or not self.has_extent(evaluated.name_full, shape):
+            return None, None
+        return shape, self.at_rest(original, shape) if original.musurf.tension else None
+
+    def has_extent(self, name, shape):
+        """Whether there is anything to be seen; the renderer refuses scenes over what is flattened to nothing or nowhere."""
+        why = ("has vertices that are not finite, or too far away" if not np.abs(shape.positions).max() <= surroundings.LARGEST else
+               "has no face with an area" if not shape.solid.any() else None)
+        if why:
+            self.say(f"\"{name}\" {why}; it is left out")
+        return not why
 
     def at_rest(self, original, shape):
         positions, why = rest.positions(original, shape)
@@ -89,12 +115,12 @@ class Export:
             self.say(f"\"{original.name}\": {why}; its material is not stretched")
         return positions
 
-    def file(self, evaluated, slot):
+    def file(self, instance, slot):
         """The name of the mesh in the scene file and the file at rest or None; None: no faces."""
-        shape, resting = self.shape(evaluated)
-        if not shape or not (shape.slot == slot).any():
+        shape, resting, name = self.shape(instance)
+        if not (shape.solid & (shape.slot == slot)).any():
             return None
-        name = f"{evaluated.name_full} {slot}"
+        name = f"{name} {slot}"
         if name not in self.meshes:
             path = os.path.join(self.folder, f"mesh-{len(self.meshes)}.obj")
             mesh.write(path, shape, slot)
@@ -103,10 +129,15 @@ class Export:
             self.meshes[name] = {"file": path}
         return name, self.meshes[name]["file"][:-4] + "-rest.obj" if resting is not None else None
 
-    def add(self, evaluated, matrix):
-        shape, _ = self.shape(evaluated)
+    def add(self, instance):
+        evaluated, matrix = instance.object, instance.matrix_world
+        if not surroundings.is_invertible(matrix):
+            return self.say(f"\"{evaluated.name_full}\" is scaled to nothing along an axis; it is left out")
+        shape = self.shape(instance)[0]
         for slot in sorted(set(shape.slot.tolist())) if shape else ():
-            found = self.file(evaluated, slot)
+            found = self.file(instance, slot)
+            if not found:
+                continue
             slots = evaluated.material_slots
             one = slots[min(slot, len(slots) - 1)].material if len(slots) else None
             name = self.material(one.original if one else None)
@@ -124,13 +155,13 @@ class Export:
             thing = instance.object
             if not instance.show_self:
                 continue
-            if thing.type in SHAPED:
-                self.add(thing, instance.matrix_world)
+            if isinstance(thing.data, bpy.types.Mesh):  # curves, text and metaballs come as meshes, too, beside themselves
+                self.add(instance)
             elif thing.type == "LIGHT":
                 made = surroundings.light(thing.data, instance.matrix_world.copy(), thing.name, self.say)
                 if made:
                     self.lights.append(made)
-            elif thing.type in ("VOLUME", "HAIR", "CURVES", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"):
+            elif thing.type in NOT_KNOWN:
                 self.say(f"\"{thing.name}\": objects of type {thing.type.lower()} are not known here; it is left out")
 
     def all(self, width, height):

@@ -8,6 +8,7 @@ import os
 import bpy
 import numpy as np
 
+LARGEST, SINGULAR = 1e9, 1e-9  # of the renderer: any number of a scene; |determinant| over the product of a map's columns
 AREA = math.pi if bpy.app.version >= (4, 0, 0) else 4
 
 
@@ -33,9 +34,28 @@ def rows(matrix):
     return [list(row) for row in matrix][:3]
 
 
+def is_invertible(matrix):
+    """What the renderer says of it (core/render/affine.c)."""
+    found = np.array(rows(matrix))
+    linear = found[:, :3]
+    with np.errstate(all="ignore"):
+        return bool(np.all(np.abs(found) <= LARGEST)
+                    and abs(np.linalg.det(linear)) > SINGULAR * np.prod(np.linalg.norm(linear, axis=0)))
+
+
+def is_light(numbers, what, say):
+    """Whether the renderer takes it as light; lamps of Blender's may be negative."""
+    if all(0 <= number <= LARGEST for number in numbers):
+        return True
+    say(f"{what} is negative or too bright; it is left out")
+    return False
+
+
 def light(data, matrix, name, say):
     """One for the list of lights, or None."""
     color = [c * data.energy for c in data.color]
+    if not is_light(color, f"the light \"{name}\"", say):
+        return None
     if data.use_nodes and data.node_tree:
         say(f"the light \"{name}\" has nodes; they are left out")
     if data.type == "SUN":
@@ -52,10 +72,13 @@ def light(data, matrix, name, say):
         say(f"the light \"{name}\" has no area; it is left out")
         return None
     size = [size[0] * scale[0], size[1] * scale[1]]
+    radiance = [c / (AREA * size[0] * size[1]) for c in color]
+    if not is_light(radiance, f"the light \"{name}\"", say):
+        return None
     # ours shines along its +z: turned about its x axis
     axes = [matrix.col[i].xyz / scale[i] for i in range(3)]
     place = [[axes[0][k], -axes[1][k], -axes[2][k], matrix.translation[k]] for k in range(3)]
-    return {"type": "rectangle", "size": size, "radiance": [c / (AREA * size[0] * size[1]) for c in color], "transform": place}
+    return {"type": "rectangle", "size": size, "radiance": radiance, "transform": place}
 
 
 def linked(socket, kinds):
@@ -77,6 +100,11 @@ def turn_of(node, say):
 
 def world(data, path_of, say):
     """What surrounds the scene, or None for darkness."""
+    found = surrounding(data, path_of, say)
+    return found if found and is_light(found.get("radiance") or found["scale"], "the world", say) else None
+
+
+def surrounding(data, path_of, say):
     if not data:
         return None
     if not data.use_nodes or not data.node_tree:

@@ -96,6 +96,18 @@ class Library(unittest.TestCase):
         self.assertEqual(watch.fractions, sorted(watch.fractions))
         self.assertTrue(np.isfinite(pixels).all() and pixels[:, :3].max() > 0)
 
+    def test_no_more_threads_than_can_be_used(self):
+        class Counting(Watch):
+            most = 0
+
+            def stop(self):
+                self.most = max(self.most, len(os.listdir("/proc/self/task")))
+                return self.most > 1100
+
+        watch = Counting()
+        self.assertEqual(library.render(json.dumps({**SCENE, "integrator": {"samples": 1}}), "scene.json", buffers(), watch, threads=1 << 20), library.DONE)
+        self.assertLess(watch.most, 1100)
+
     def test_what_is_raised_comes_back(self):
         class Angry(Watch):
             def progress(self, *arguments):

@@ -11,6 +11,8 @@
 #include "core/render/options.h"
 #include "core/render/render_scene.h"
 
+enum { MOST_THREADS = 1024 }; /* as for `musurf render`: each pass starts them anew */
+
 typedef struct mu_run {
     musurf_render_request asked;
     mu_document document;
@@ -115,6 +117,7 @@ int32_t musurf_render_run(const musurf_render_request *request) {
     /* What a caller of another version does not know is absent. */
     memcpy(&run.asked, request, request->size < sizeof run.asked ? request->size : sizeof run.asked);
     if (!run.asked.threads) run.asked.threads = mu_processors();
+    if (run.asked.threads > MOST_THREADS) run.asked.threads = MOST_THREADS;
     mu_ear ear = {run.asked.context, run.asked.message};
     mu_error error = {.warn = warn, .context = &ear};
     const mu_render_end end = render(&run, &error);

@@ -24,7 +24,7 @@ enum { MUSURF_RENDER_WARNING = 1, MUSURF_RENDER_ERROR = 2 };
 
 typedef struct musurf_render_request {
     uint32_t size;     /* sizeof of this struct as the caller knows it: at least up to `stop` */
-    uint32_t threads;  /* 0: one per processor */
+    uint32_t threads;  /* at most 1024; 0: one per processor */
     const char *scene; /* JSON */
     const char
         *name;     /* of that text, as if it were a file: for messages, and files are named relative to it */

@@ -107,6 +107,7 @@ help:
 	@echo 'make geometry   mirror facets rendered by POV-Ray beside the material fitted to them; QUICK=1: a glance'
 	@echo 'make geometry-tension  the same of plates deformed as a whole, beside meshes with "tension": highlights; QUICK=1: a glance'
 	@echo 'make figures    the paper'"'"'s Figures 6, 7, 8 (scenes/figures) and an inflating balloon into $(BUILD)/figures; QUICK=1: a glance'
+	@echo 'make ibl        techniques of image-based lighting against path tracing: error against time; QUICK=1: a glance; README=1: also there'
 	@echo 'make costs      what accuracy costs on explicit surfaces: error against time and memory; QUICK=1: a glance'
 	@echo 'make report     all of these and the full cross-check, measured and on one page, with what is claimed on top; QUICK=1'
 	@echo 'make tables     measure the accuracy and speed tables of the README again'

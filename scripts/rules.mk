@@ -29,6 +29,13 @@ figures: deps
 run-figures: all
 	@BUILD=$(BUILD) $(PYTHON) scripts/figures -o $(BUILD)/figures $(if $(QUICK),--quick)
 
+# Image-based lighting against path tracing: error against the time of a frame, over roughness, anisotropy, environments, reads.
+.PHONY: ibl run-ibl
+ibl: deps
+	@$(MAKE) --no-print-directory run-ibl
+run-ibl: all $(BUILD)/tests/bench_ibl
+	@BUILD=$(BUILD) $(PYTHON) scripts/ibl -o $(BUILD)/ibl $(if $(QUICK),--quick) $(if $(README),--readme)
+
 # What accuracy costs on explicit surfaces: error against time and memory, over grid, points, realisations, images, tracers.
 costs: deps
 	@$(MAKE) --no-print-directory run-costs

@@ -17,7 +17,7 @@ from command import BUILD, ROOT, musurf, strict
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from figuring import pictures, triangle  # noqa: E402
-from modelling import balloon, creatures, curves, make, mesh, vase  # noqa: E402
+from modelling import balloon, creatures, curves, make, mesh, teapot, vase, wave  # noqa: E402
 
 FINE = 0.25
 
@@ -30,7 +30,7 @@ def volume(shape):
 
 class Meshes(unittest.TestCase):
     def test_outside_is_outside_and_no_triangle_is_without_area(self):
-        shapes = [("vase", vase.vase(FINE)), ("balloon", balloon.inflated(1, FINE))]
+        shapes = [("vase", vase.vase(FINE)), ("teapot", teapot.teapot(FINE)), ("balloon", balloon.inflated(1, FINE))]
         shapes += [(f"{name} {pose}", shape) for name in creatures.POSES for pose, shape in creatures.posed(name, FINE).items()]
         for name, shape in shapes:
             with self.subTest(name):
@@ -55,10 +55,23 @@ class Meshes(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             files = [make.write(folder / name, 0.1) for name in "ab"]
-            self.assertEqual(len(files[0]), 2 * 5 + balloon.FRAMES + 1)
+            self.assertEqual(len(files[0]), 2 * 5 + balloon.FRAMES + 3)
             for a, b in zip(*files):
                 self.assertEqual(a.read_bytes(), b.read_bytes())
-            self.assertEqual(sorted(file.suffix for file in folder.rglob("*") if file.is_file()), [".ply"] * 2 * len(files[0]))
+            self.assertEqual(sorted(file.suffix for file in folder.rglob("*") if file.is_file()), sorted([".ply"] * 2 * (len(files[0]) - 1) + [".png"] * 2))
+
+
+class Map(unittest.TestCase):
+    def test_strokes_run_where_they_are_said_to(self):
+        """Around the sun; flat on still water's floor. A byte holds a component to 1/255."""
+        shown = wave.picture(128).astype(float) / 127.5 - 1
+        v, u = np.mgrid[0:128, 0:128]
+        u, v = (u + 0.5) / 128, 1 - (v + 0.5) / 128
+        away = np.stack([u - 0.77, v - 0.76], -1)
+        sun = np.hypot(*np.moveaxis(away, -1, 0)) < 0.12
+        np.testing.assert_allclose((shown[..., :2] * away).sum(-1)[sun] / np.hypot(*away[sun].T), 0, atol=2 / 255)
+        np.testing.assert_allclose(np.hypot(shown[..., 0], shown[..., 1]), 1, atol=2 / 255)
+        self.assertLess(np.abs(shown[-1, :, 1]).max(), 0.06)
 
 
 class Tension(unittest.TestCase):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
-"""Writes the meshes that scenes/figures show; see --help."""
+"""Writes the meshes and the direction map that scenes/figures and scenes/ibl show; see --help."""
 import argparse
 import pathlib
 import sys
 
-from . import balloon, creatures, mesh, vase
+from . import balloon, creatures, mesh, teapot, vase, wave
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "build" / "meshes"  # where the scene files look for them
 
@@ -18,6 +18,7 @@ def meshes(fine=1.0):
     for k, shape in enumerate(balloon.frames(fine), 1):
         yield f"balloon-{k:02d}.ply", shape
     yield "vase.ply", vase.vase(fine)
+    yield "teapot.ply", teapot.teapot(fine)
 
 
 def write(folder=FOLDER, fine=1.0):
@@ -27,12 +28,14 @@ def write(folder=FOLDER, fine=1.0):
     for name, shape in meshes(fine):
         files.append(folder / name)
         mesh.write(shape, files[-1])
+    files.append(folder / "wave.png")
+    wave.write(files[-1])
     return files
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser("scripts/meshes", description="Makes the meshes of scenes/figures by formulas: rubber animals in poses, a balloon in "
-                                     "24 states, a vase; PLY with texture coordinates, the same bytes every time. Prints their names. Exit 0; 2 on wrong usage.")
+    parser = argparse.ArgumentParser("scripts/meshes", description="Makes the meshes of scenes/figures and scenes/ibl by formulas: rubber animals in poses, a "
+                                     "balloon in 24 states, a vase, a teapot; PLY with texture coordinates, the same bytes every time; and a direction map, wave.png. Prints their names. Exit 0; 2 on wrong usage.")
     parser.add_argument("-o", metavar="DIR", dest="output", type=pathlib.Path, default=FOLDER, help="default: build/meshes, where the scenes look")
     parser.add_argument("--fine", type=float, default=1.0, help="points along each direction, of the usual number (default: 1)")
     options = parser.parse_args(arguments)

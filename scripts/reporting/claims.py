@@ -103,6 +103,14 @@ def mutants(data):
     return f"{killed} of {len(wrong)} rejected", AGREES if all(m["as_it_should_be"] for m in found) else FAILS
 
 
+def lighting(name):
+    """A claim that scripts/imaging/verdicts.py judged."""
+    def told(data):
+        found = next(c for c in data["ibl"]["claims"] if c["name"] == name)
+        return found["number"], {True: AGREES, False: FAILS, None: MISSING}[found["holds"]]
+    return told
+
+
 def costs(data):
     chosen = [r for r in data["costs"]["choices"]["rows"] if r.get("measured") is not None]
     if not chosen:
@@ -124,6 +132,10 @@ CLAIMS = [
     ("What accuracy costs on explicit surfaces is known beforehand.", "Power laws over grid, points, realisations; predictions tried with fresh seeds", "costs", costs),
     ("A material fitted to a surface looks as the surface does.", "Plates of facets by POV-Ray beside the fitted material, several M", "geometry", geometry),
     ("A microsurface deforms with its object (Section 5.1).", "Highlights of deformed plates of facets by POV-Ray beside meshes under tension", "deformed", deformed),
+    ("Lighting by the major axis costs little more than by the bent normal.", "Time of whole frames of the same run, N = 16; at most 2.5 times", "ibl", lighting("cost")),
+    ("It is nearer to the truth for α_lin < 0.5, as its paper says.", "Mean FLIP against path tracing over roughness, anisotropy, environments", "ibl", lighting("seed")),
+    ("Better reads halve its FLIP there at no higher cost.", "The same; the best technique beyond the paper’s", "ibl", lighting("half")),
+    ("They are better than the bent normal above 0.5, too.", "The same", "ibl", lighting("above")),
     ("Masking of GTR is exact for every γ, not only for integers.", "G1 against the rule at half the step", "curves", masking),
     ("The paper’s approximate masking of GTR is not exact between integers.", "Figure 9: G1 by the spline of Appendix A against exact masking", "efficiency", spline),
     ("Sampling visible normals needs fewer samples than the paper’s mixed sampling.", "Noise on the torus knot of Figure 10 against a long reference", "efficiency", samplers),

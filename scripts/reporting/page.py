@@ -14,7 +14,7 @@ from . import claims, exr_header, parts, sections, versions
 
 HELP = {"gallery": "output folder of scripts/gallery", "plates": "PNG files, beside them EXR files and plates.json", "validate": "output folder of scripts/validate",
         "curves": "output folder of scripts/curves", "costs": "output folder of scripts/costs", "efficiency": "output folder of scripts/efficiency",
-        "geometry": "output folder of scripts/geometry-pair", "deformed": "output folder of scripts/geometry-tension", "figures": "output folder of scripts/figures",
+        "ibl": "output folder of scripts/ibl", "geometry": "output folder of scripts/geometry-pair", "deformed": "output folder of scripts/geometry-tension", "figures": "output folder of scripts/figures",
         "mutants": "mutants.json of tests/test_mutants.py", "stability": "output folder of scripts/stability"}
 
 

@@ -19,6 +19,7 @@ PARTS = {"gallery": (["scripts/gallery"], ["--quick"], [], "gallery/gallery.json
          "curves": (["scripts/curves"], [], [], "curves/1-masking-time.json"),
          "costs": (["scripts/costs"], ["--quick"], [], "costs/costs.json"),
          "efficiency": (["scripts/efficiency"], ["--quick"], [], "efficiency/efficiency.json"),
+         "ibl": (["scripts/ibl"], ["--quick"], [], "ibl/ibl.json"),
          "geometry": (["scripts/geometry-pair"], ["--quick"], [], "geometry/geometry.json"),
          "deformed": (["scripts/geometry-tension"], ["--quick"], [], "geometry-tension/deformed.json"),
          "figures": (["scripts/figures"], ["--quick"], [], "figures/figures.json"),

@@ -45,7 +45,7 @@ def of_stability(path):
 SECTIONS = [("gallery", "Surfaces and lobes", "gallery", study("gallery", "gallery.json")), ("plates", "Plates", "plates", of_plates),
             ("validate", "Cross-check", "validate", study("validate", "validate.json")), ("curves", "Error against run time", "curves", of_curves),
             ("costs", "What accuracy costs", "costs", study("costs", "costs.json")), ("efficiency", "Masking and sampling", "efficiency", study("efficiency", "efficiency.json")),
-            ("geometry", "Explicit geometry", "geometry", study("geometry", "geometry.json")),
+            ("ibl", "Image-based lighting", "ibl", study("ibl", "ibl.json")), ("geometry", "Explicit geometry", "geometry", study("geometry", "geometry.json")),
             ("deformed", "Deformed plates", "geometry-tension", study("deformed", "deformed.json")), ("figures", "Figures 6 to 8", "figures", study("figures", "figures.json")),
             ("mutants", "Mutants", "mutants.json", of_mutants),
             ("stability", "Stability", "stability", of_stability)]

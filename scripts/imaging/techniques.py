@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""Which "integrator"s are looked at: what the program says it has, with N reads where a technique has a choice."""
+import json
+
+from . import effort as efforts
+from . import program, scene
+
+ONE_READ = ("split", "bent-normal")
+BASELINE, SEED = "bent-normal", "major-axis"
+
+
+def names(musurf):
+    """In the program's order."""
+    return [name for name in json.loads(program.call(musurf, "info", "--json"))["integrators"] if name != "path"]
+
+
+def all_of(musurf, effort):
+    """[integrator]: one for each technique and number of reads."""
+    found = []
+    for name in names(musurf):
+        found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in sorted({*effort.reads, efforts.SEED, efforts.FILTERED})]
+    return found
+
+
+def contenders(musurf, best=None):
+    """What is compared on whole scenes: every technique with the paper's number of reads, and the best."""
+    found = [{"by": name} if name in ONE_READ else {"by": name, "reads": efforts.SEED} for name in names(musurf)]
+    return found + [best] if best and best not in found else found
+
+
+def sweeps(effort):
+    """{"k" or "beta": [integrator]}, as far as scene files have these keys."""
+    keys = json.loads((scene.ROOT / "scenes" / "scene.schema.json").read_text())["$defs"]["integrator"]["properties"]
+    return {key: [{"by": SEED, "reads": efforts.SEED, key: value} for value in values] for key, values in (("k", effort.k), ("beta", effort.beta)) if key in keys}
+
+
+def label(integrator):
+    more = "".join(f", {key} {value:g}" for key, value in integrator.items() if key not in ("by", "reads"))
+    return integrator["by"] + (f", N = {integrator['reads']}" if "reads" in integrator else "") + more

@@ -116,10 +116,42 @@ void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, floa
     for (int k = 0; k < 4; k++) rgb[k] = sum[k];
 }
 
+/* Reads in one square: where, and with what weights, first; that is worked out for several at a time. */
+static inline void sum_square(const mu_ibl_square *s, size_t count, const float *restrict u,
+                              const float *restrict v, const float *restrict weight, float share,
+                              float *restrict sum) {
+    const float side = (float)s->side;
+    const int whole = (int)s->side + 2;
+    int at[MU_IBL_BATCH];
+    float w[4][MU_IBL_BATCH];
+    for (size_t i = 0; i < count; i++) {
+        const float x = u[i] * side + 0.5f, y = v[i] * side + 0.5f, own = weight[i] * share;
+        const int column = (int)x, row = (int)y;
+        const float right = x - (float)column, down = y - (float)row, lower = own * down, upper = own - lower;
+        at[i] = 4 * (row * whole + column);
+        w[1][i] = upper * right, w[0][i] = upper - w[1][i];
+        w[3][i] = lower * right, w[2][i] = lower - w[3][i];
+    }
+    for (size_t i = 0; i < count; i++) {
+        const float *restrict a = s->texels + at[i], *restrict b = a + 4 * whole;
+        for (int k = 0; k < 4; k++)
+            sum[k] += (w[0][i] * a[k] + w[1][i] * a[4 + k]) + (w[2][i] * b[k] + w[3][i] * b[4 + k]);
+    }
+}
+
 void mu_ibl_globe_sum(const mu_ibl_globe *g, const mu_ibl_batch *b, float rgb[4]) {
     float u[MU_IBL_BATCH], v[MU_IBL_BATCH], sum[4] = {rgb[0], rgb[1], rgb[2], rgb[3]};
+    int alike = 1;
     for (size_t i = 0; i < b->count; i++) fold(b->x[i], b->y[i], b->z[i], &u[i], &v[i]);
-    for (size_t i = 0; i < b->count; i++) trilinear(g, u[i], v[i], b->level[i], b->weight[i], sum);
+    for (size_t i = 1; i < b->count; i++) alike &= b->level[i] == b->level[0];
+    if (alike && b->count > 1) {
+        const int low = (int)b->level[0];
+        const float share = low + 1 < (int)g->levels ? b->level[0] - (float)low : 0;
+        sum_square(&g->level[low], b->count, u, v, b->weight, 1 - share, sum);
+        if (share > 0) sum_square(&g->level[low + 1], b->count, u, v, b->weight, share, sum);
+    } else {
+        for (size_t i = 0; i < b->count; i++) trilinear(g, u[i], v[i], b->level[i], b->weight[i], sum);
+    }
     for (int k = 0; k < 4; k++) rgb[k] = sum[k];
 }
 

@@ -88,8 +88,8 @@ static void references(const mu_definition *d, view views[VIEWS], reference *out
         direction(cos((1 + 88.5 * i / (VIEWS - 1)) * TURN / 360), TURN * fmod(i * 0.6180339887498949, 1),
                   v->w);
         const mu_closure_f c = bound(s, v->w);
-        v->single = (double)albedo_integral_f(&c, 1, 1e-6);
-        out->unsure = fmax(out->unsure, fabs(v->single - (double)albedo_integral_f(&c, 1, 1e-4)));
+        v->single = (double)albedo_integral_f(&c, 1, 1e-6, NULL);
+        out->unsure = fmax(out->unsure, fabs(v->single - (double)albedo_integral_f(&c, 1, 1e-4, NULL)));
         double sum = 0, squares = 0;
         for (int k = 0; k < DRAWS; k++) {
             const float u[3] = {uniform_float(&random), uniform_float(&random), uniform_float(&random)};

@@ -131,7 +131,7 @@ static double single_albedo(const struct family *f, mu_closure_f *c, int blurred
                             double *error) {
     *error = 0;
     if (f->ndf != MU_TABULATED || blurred)
-        return (double)albedo_integral_f(c, f->ndf == MU_GTR && !blurred ? f->alpha : 1, 1e-4);
+        return (double)albedo_integral_f(c, f->ndf == MU_GTR && !blurred ? f->alpha : 1, 1e-4, NULL);
     double sum = 0, squares = 0;
     c->importance = 1;
     for (int i = 0; i < SAMPLES; i++) {

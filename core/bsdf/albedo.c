@@ -10,18 +10,21 @@
  */
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/random.h"
+#include "core/bsdf/singular.h"
 
 #if MU_REAL_BITS == 24
 
 /* Walks that tell where light leaves; nodes along a side of a patch at most, what is midway between them included. */
 enum { WALKS = 2048, FINEST = ALBEDO_HALVINGS + 1, SIDE = (1 << FINEST) + 1 };
-static const float smallest = 1e-12f; /* singular value of L, lest it leave float's range */
+static const double roundest = 0.999; /* B/A that u knows: ln 1 is 0 */
+static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
 static const float least = 1e-7f;     /* what is lost at least: the lobe exists everywhere */
 
 /* One patch while it grows. */
 typedef struct patch_maker {
     const albedo_source *source;
     const mu_albedo *table;
+    const mu_albedo_side *side;
     double core;
     float turn; /* +1; -1 from below */
     int quadrant, column, row;
@@ -47,14 +50,17 @@ double mu_albedo_core(const albedo_source *s, const closure *c) {
 static float evaluate(const patch_maker *m, double u, double s) {
     float w[3];
     closure c;
-    mu_albedo_direction(m->table, &m->table->frame, m->quadrant, (float)((m->column + u) / m->table->columns),
-                        (float)albedo_s(m->table, (m->row + s) / ALBEDO_ROWS), w);
+    mu_albedo_direction(m->table, m->side, &m->table->frame, m->quadrant,
+                        (float)((m->column + u) / m->table->columns),
+                        (float)albedo_s(m->side, (m->row + s) / ALBEDO_ROWS), w);
     for (int k = 0; k < 3; k++) w[k] *= m->turn;
     if (!bind_source(m->source, w, &c)) return 1;
-    if (m->source->slopes && c.kernel->traits & HAS_JUMPS)
+    if (m->source->slopes && c.kernel->traits & HAS_JUMPS) {
+        m->source->effort->panels += ALBEDO_SLOPES / 11; /* of as many slopes */
         return fmaxf(1 - mu_albedo_of_slopes(&c, m->source->slopes), least);
+    }
     const double allowed = fmin(m->source->error / 4, 1e-3);
-    return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed), least);
+    return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed, m->source->effort), least);
 }
 
 /* The value at j, i of 2^log each; each is evaluated once. */
@@ -71,11 +77,11 @@ static float critical(const patch_maker *m, double u) {
     const double index = m->source->definition->dielectric, eta = m->turn < 0 ? 1 / index : index;
     float w[3];
     if (!m->parted || !(eta < 1)) return -1;
-    mu_albedo_direction(m->table, &m->table->frame, m->quadrant, (float)((m->column + u) / m->table->columns),
-                        0.5f, w);
+    mu_albedo_direction(m->table, m->side, &m->table->frame, m->quadrant,
+                        (float)((m->column + u) / m->table->columns), 0.5f, w);
     const float flat = hypotf(w[0], w[1]), sine = (float)eta;
     const float at_it[3] = {w[0] / flat * sine, w[1] / flat * sine, sqrtf(1 - sine * sine)};
-    const albedo_place place = albedo_locate(m->table, &m->table->frame, at_it);
+    const albedo_place place = albedo_locate(m->table, m->side, &m->table->frame, at_it);
     return place.patch % ALBEDO_ROWS == m->row ? place.s : -1;
 }
 
@@ -90,13 +96,13 @@ static float off_at(patch_maker *m, int j, float s) {
 
 /* The most that lines between nodes along an axis are off what is midway; or, of what transmits, at quarters, since inflections
  * hide midway what is off on both sides of it, and where total reflection begins, however narrow that is. */
-static float look_between(patch_maker *m, int axis) {
+static float look_between(patch_maker *m, int axis, size_t panels) {
     const int cells = 1 << m->log[axis], lines = 1 << m->log[!axis], parts = m->parted ? 2 : 1;
     float worst = 0;
     for (int k = 0; k <= (m->table->columns == 1 ? 0 : lines); k++) {
         const float kink = axis ? critical(m, (double)k / lines) : -1;
         if (kink >= 0) worst = fmaxf(worst, off_at(m, k, kink));
-        for (int i = 0; i < cells << parts; i++) {
+        for (int i = 0; i < cells << parts && m->source->effort->panels < panels; i++) {
             const int cell = i >> parts, step = i - (cell << parts);
             if (!step) continue;
             const int *const log = m->log;
@@ -110,20 +116,25 @@ static float look_between(patch_maker *m, int axis) {
     return worst;
 }
 
-/* Halves until both axes are near enough; returns what is left. */
-static float grow(patch_maker *m, size_t most) {
+/* Halves until both axes are near enough, or the work so far comes to `panels`; returns what is left. */
+static float grow(patch_maker *m, size_t most, size_t panels) {
     const float wanted = (float)m->source->error / 2;
     const int isotropic = m->table->columns == 1;
-    m->log[0] = isotropic ? 0 : 1, m->log[1] = 1;
+    /* a cell at least for each 1.5 of ln(A/B) that u is to a column */
+    const float steps = m->table->frame.log / (1.5f * (float)m->table->columns);
+    m->log[0] = isotropic ? 0 : steps > 2 ? (int)ceilf(log2f(steps)) : 1, m->log[1] = 1;
     float left[2] = {0, 0};
     int done[2] = {isotropic, 0};
     for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
         if (done[axis]) continue;
-        left[axis] = look_between(m, axis);
+        const float before = left[axis];
+        left[axis] = look_between(m, axis, panels);
         done[axis] = 1;
+        /* of a look that has to end early, what the one before said is known, at most */
+        if (m->source->effort->panels >= panels) left[axis] = fmaxf(left[axis], before);
         if (left[axis] <= wanted) continue;
         const size_t cells = (size_t)1 << (m->log[0] + m->log[1]);
-        if (m->log[axis] >= m->source->halvings ||
+        if (m->log[axis] >= m->source->halvings || m->source->effort->panels >= panels ||
             2 * (2 * cells + (1u << m->log[0]) + (2u << m->log[1])) > most)
             continue;
         m->log[axis]++;
@@ -153,16 +164,21 @@ static void start(patch_maker *m, int k) {
 
 static size_t fill_side(const albedo_source *source, const mu_albedo *t, double core, float turn,
                         mu_albedo_side *out, float *values, size_t most) {
-    patch_maker m = {.source = source, .table = t, .core = core, .turn = turn};
+    patch_maker m = {.source = source, .table = t, .side = out, .core = core, .turn = turn};
     m.parted = source->surface->transmission;
     const int patches = t->quadrants * t->columns * ALBEDO_ROWS;
-    size_t nodes = 0, cells = 0;
-    out->unsure = 0;
+    albedo_effort *const effort = source->effort;
+    size_t nodes = 0, cells = 0, left = source->panels / (source->surface->transmission ? 2 : 1);
+    out->unsure = 0, effort->off = 0;
     for (int k = 0; k < patches; k++) {
         start(&m, k);
         /* what is left, but for the least of those to come */
-        const size_t used = nodes + cells, kept = (size_t)(patches - 1 - k) * 13;
-        out->unsure = fmaxf(out->unsure, grow(&m, most > used + kept ? most - used - kept : 0));
+        const size_t used = nodes + cells, kept = (size_t)(patches - 1 - k) * 13, before = effort->panels;
+        const size_t memory = most > used + kept ? most - used - kept : 0;
+        /* of work, too, whatever those before have left, and a hard one more than its part */
+        out->unsure =
+            fmaxf(out->unsure, grow(&m, memory, before + left / (size_t)(1 + (patches - 1 - k) / 4)));
+        left -= effort->panels - before < left ? effort->panels - before : left;
         const int across = 1 << m.log[0], up = 1 << m.log[1];
         out->patch[k] =
             (albedo_patch){(uint32_t)nodes, (uint32_t)cells, (uint8_t)m.log[0], (uint8_t)m.log[1]};
@@ -170,6 +186,7 @@ static size_t fill_side(const albedo_source *source, const mu_albedo *t, double 
             for (int i = 0; i <= up; i++) values[nodes++] = at(&m, j, m.log[0], i, m.log[1]);
         cells += (size_t)(across * up);
     }
+    if (effort->off > source->error / 2) out->unsure = fmaxf(out->unsure, (float)effort->off);
     out->lost = values, out->cells = (uint32_t)cells;
     mu_albedo_fill_lobe(t, out, values + nodes);
     return nodes + cells;
@@ -197,47 +214,59 @@ static double share_above(const albedo_source *source) {
 }
 
 /* L = diag(a, b) R from V: turned to the axes of M, those of V^T V; and what is rougher than 1 along one is bounded. */
-float mu_albedo_lay(const float v[4], mu_albedo_frame *f) {
-    const float plus = hypotf(v[0] + v[3], v[1] - v[2]), minus = hypotf(v[0] - v[3], v[1] + v[2]);
-    const float large = fmaxf((plus + minus) / 2, FLT_MIN),
-                n[4] = {v[0] / large, v[1] / large, v[2] / large, v[3] / large};
-    const float ratio =
-        fmaxf((float)fabs((double)n[0] * (double)n[3] - (double)n[1] * (double)n[2]), smallest);
+float mu_albedo_lay(const double v[4], mu_albedo_frame *f) {
+    const double plus = hypot(v[0] + v[3], v[1] - v[2]), minus = hypot(v[0] - v[3], v[1] + v[2]);
+    const double large = fmax((plus + minus) / 2, (double)FLT_MIN),
+                 n[4] = {v[0] / large, v[1] / large, v[2] / large, v[3] / large};
+    const double ratio = fmax(fabs(product_difference(n[0], n[3], n[1], n[2])), smallest);
     /* twice the axes' angle, and the half of it that does not cancel */
-    const float p = n[0] * n[0] + n[2] * n[2] - n[1] * n[1] - n[3] * n[3],
-                q = 2 * (n[0] * n[1] + n[2] * n[3]), r = hypotf(p, q), root = sqrtf((r + fabsf(p)) / 2);
-    float c = 1, s = 0;
+    const double p = n[0] * n[0] + n[2] * n[2] - n[1] * n[1] - n[3] * n[3],
+                 q = 2 * (n[0] * n[1] + n[2] * n[3]), r = hypot(p, q), root = sqrt((r + fabs(p)) / 2);
+    double c = 1, s = 0;
     if (r > 0) {
-        const float other = fabsf(q) / (2 * root), length = sqrtf(r);
-        c = (p >= 0 ? root : other) / length, s = -copysignf(p >= 0 ? other : root, q) / length;
+        const double other = fabs(q) / (2 * root), length = sqrt(r);
+        c = (p >= 0 ? root : other) / length, s = -copysign(p >= 0 ? other : root, q) / length;
     }
-    const float a = fminf(fmaxf(large, smallest), 1), b = fminf(fmaxf(large * ratio, smallest), 1);
-    *f = (mu_albedo_frame){.to = {a * c, -a * s, b * s, b * c},
-                           .from = {c / a, s / b, -s / a, c / b},
-                           .det = a * b,
-                           .along = sqrtf(ratio)};
-    f->k = b / a / f->along;
-    return large;
+    const double a = fmin(fmax(large, smallest), 1), b = fmin(fmax(large * ratio, smallest), 1);
+    *f = (mu_albedo_frame){.to = {(float)(a * c), (float)(-a * s), (float)(b * s), (float)(b * c)},
+                           .from = {(float)(c / a), (float)(s / b), (float)(-s / a), (float)(c / b)},
+                           .det = (float)(a * b),
+                           .k = (float)(b / a),
+                           .ratio = (float)fmin(ratio, roundest)};
+    f->log = -logf(f->ratio);
+    return (float)large;
+}
+
+void mu_albedo_turn(mu_albedo_frame *f, double turn) {
+    const double c = cos(turn), s = sin(turn);
+    for (int k = 0; k < 2; k++) {
+        const double x = (double)f->to[2 * k], y = (double)f->to[2 * k + 1], u = (double)f->from[k],
+                     v = (double)f->from[2 + k];
+        f->to[2 * k] = (float)(x * c - y * s), f->to[2 * k + 1] = (float)(x * s + y * c);
+        f->from[k] = (float)(c * u - s * v), f->from[2 + k] = (float)(s * u + c * v);
+    }
 }
 
 static void lay(const closure *c, mu_albedo *t) {
     const map *m = &c->map;
-    const float v[4] = {m->view[0] / m->view_z, m->view[1] / m->view_z, m->view[2] / m->view_z,
-                        m->view[3] / m->view_z};
+    double v[4];
+    for (int k = 0; k < 4; k++) v[k] = (double)m->view[k] / (double)m->view_z;
     mu_albedo_lay(v, &t->frame);
-    const int isotropic = t->frame.along >= 1 - 5e-7f;
+    const singular s = singular_of(v);
+    const int isotropic = fabs(s.small) >= s.large * (1 - 1e-6);
     const int level = m->tilt[0] == 0 && m->tilt[1] == 0 && !(c->kernel->traits & ANISOTROPIC);
     t->quadrants = level ? 1 : 4;
     t->columns = level && isotropic ? 1 : ALBEDO_COLUMNS;
 }
 
 /* n by which 8 steps of S say E best, at two azimuths. */
-static int best_roots(const albedo_source *source, mu_albedo *t, double core, double *error_of_it) {
+static int best_roots(const albedo_source *source, const mu_albedo *t, double core, float turn,
+                      mu_albedo_side *side, double *error_of_it) {
     enum { MOST = 4, STEPS = 16, AZIMUTHS = 2 };
     double least_error = INFINITY;
     int best = 0;
-    for (t->roots = 0; t->roots < MOST; t->roots++) {
-        patch_maker m = {.source = source, .table = t, .core = core, .turn = 1};
+    for (side->roots = 0; side->roots < MOST; side->roots++) {
+        patch_maker m = {.source = source, .table = t, .side = side, .core = core, .turn = turn};
         double error = 0;
         for (int k = 0; k < (t->columns == 1 ? 1 : AZIMUTHS); k++) {
             float lost[STEPS + 1];
@@ -246,26 +275,28 @@ static int best_roots(const albedo_source *source, mu_albedo *t, double core, do
             for (int i = 1; i < STEPS; i += 2)
                 error += pow(fabs((double)lost[i] - ((double)lost[i - 1] + (double)lost[i + 1]) / 2), 2);
         }
-        if (error < least_error) least_error = error, best = t->roots;
+        if (error < least_error) least_error = error, best = side->roots;
     }
     *error_of_it = least_error;
     return best;
 }
 
-/* And sqrt(S) if that halves what is off. */
-static void choose_roots(const albedo_source *source, mu_albedo *t, double core) {
+/* And sqrt(S) where the microsurface is not even, or if that halves what is off. */
+static void choose_roots(const albedo_source *source, const mu_albedo *t, double core, float turn,
+                         mu_albedo_side *side) {
     double plain, rooted;
-    const int roots = best_roots(source, t, core, &plain);
-    if (!t->rooted && !source->trusting) {
-        t->rooted = 1;
-        const int others = best_roots(source, t, core, &rooted);
+    side->rooted = t->quadrants > 1;
+    const int roots = best_roots(source, t, core, turn, side, &plain);
+    if (!side->rooted && !source->trusting) {
+        side->rooted = 1;
+        const int others = best_roots(source, t, core, turn, side, &rooted);
         if (rooted < plain / 4) {
-            t->roots = others;
+            side->roots = others;
             return;
         }
-        t->rooted = 0;
+        side->rooted = 0;
     }
-    t->roots = roots;
+    side->roots = roots;
 }
 
 size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, size_t most) {
@@ -274,15 +305,15 @@ size_t mu_albedo_make(const albedo_source *source, mu_albedo *t, float *values, 
     bind_source(source, up, &c);
     lay(&c, t);
     const double core = mu_albedo_core(source, &c);
-    t->rooted = t->quadrants > 1;
-    if (source->roots)
-        t->roots = source->roots - 1;
-    else
-        choose_roots(source, t, core);
     const int sides = source->surface->transmission ? 2 : 1;
     size_t used = 0;
     t->side[1].cells = 0;
     for (int i = 0; i < sides; i++) {
+        mu_albedo_side *const side = &t->side[i];
+        if (source->like)
+            side->roots = source->like->side[i].roots, side->rooted = source->like->side[i].rooted;
+        else
+            choose_roots(source, t, core, i ? -1.0f : 1.0f, side);
         used += fill_side(source, t, core, i ? -1.0f : 1.0f, &t->side[i], values + used,
                           (most - used) / (size_t)(sides - i));
         t->side[i].passes = 0;

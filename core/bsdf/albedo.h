@@ -7,16 +7,17 @@
  * E of a transformed microsurface is smooth in the slopes' own units, which is where tables are laid: with V = s M^-1, s the
  * slope unit, L is V without the rotation that comes last, its singular values A >= B made a, b, at most 1 (of what is rougher
  * than 1 along an axis: such a surface changes at every angle). With (x, y) = L w.xy and r its length,
- *     S = 1 - (1 - (r / (r + w.z))²)^(1/2^n),     u = |y| / (k |x| + |y|),     k = b/a / sqrt(B/A),
+ *     S = 1 - (1 - (r / (r + w.z))²)^(1/2^n),     u = ln((X + Y) / (X + Y B/A)) / ln(A/B),   X = |x|/a, Y = |y|/b,
  * and the quadrant of (x, y). S is 1/4 (n = 0) where a direction is as far from the horizon as the slopes are, equal in area
  * around the normal, and 1 at the horizon, where E of a rough surface turns to 1 over decades of w.z: n = 0, 1, 2 the rougher
- * it is. k has u see both the axes of M and the azimuths of the microsurface before M. Solid angle by
- *     du dS = 2^(1-n) (1 - S)^(1-2^n) a b ((1-u)² + k² u²) / (k (r + w.z)³) dw.
+ * it is. u is a logarithm between the azimuths of the world, Y/X about 1, and those of the microsurface before M, about A/B,
+ * and linear beyond either: E may turn with both, and with any in between. Solid angle by
+ *     du dS = 2^(1-n) (1 - S)^(1-2^n) (1 - B/A) r² / (ln(A/B) (X + Y) (X + Y B/A) (r + w.z)³) dw.
  * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and where tails are heavy (slopes
  * of no variance) E has a tip there, r^(2 gamma - 2) of std and gtr: sqrt(S) takes the place of S in interpolation; cells are drawn from uniformly in S nevertheless.
  * The square [0, 1]² is cut into patches, and each of them into as many cells as its E asks for: halved along either axis
  * until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
- * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic has no u.
+ * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic knows no u, which is the azimuth then.
  */
 #ifndef MU_ALBEDO_H
 #define MU_ALBEDO_H
@@ -45,20 +46,22 @@ typedef struct mu_albedo_side {
     uint32_t cells;
     float average; /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
     float passes;  /* of light that is scattered on: the share that leaves on the other side */
+    int roots;     /* n */
+    int rooted;    /* sqrt(S) takes the place of S */
     float unsure;  /* the most that a value was off where halving ended before it was near enough; else 0 */
     albedo_patch patch[ALBEDO_PATCHES];
 } mu_albedo_side;
 
 typedef struct mu_albedo {
     mu_albedo_frame frame;  /* of the M that it was made for */
-    int roots;              /* n */
-    int rooted;             /* sqrt(S) takes the place of S */
     int quadrants, columns; /* 1 or 4; 1 or ALBEDO_COLUMNS */
     mu_albedo_side side[2]; /* above; below too if the surface transmits */
 } mu_albedo;
 
 /* The frame of V = s M^-1; returns A. */
-float mu_albedo_lay(const float v[4], mu_albedo_frame *out);
+float mu_albedo_lay(const double v[4], mu_albedo_frame *out);
+/* Of a table made where directions are R(-turn) times those of the frame that it is to have. */
+void mu_albedo_turn(mu_albedo_frame *f, double turn);
 
 /* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. */
 typedef struct albedo_place {
@@ -66,27 +69,33 @@ typedef struct albedo_place {
     float u, s, stretch;
 } albedo_place;
 
-static inline float albedo_row(const mu_albedo *t, float s) {
-    return t->rooted ? sqrtf(s) : s;
+static inline float albedo_row(const mu_albedo_side *side, float s) {
+    return side->rooted ? sqrtf(s) : s;
 }
 /* And back. */
-static inline double albedo_s(const mu_albedo *t, double row) {
-    return t->rooted ? row * row : row;
+static inline double albedo_s(const mu_albedo_side *side, double row) {
+    return side->rooted ? row * row : row;
 }
 
-static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_frame *f, const float w[3]) {
+static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_side *side,
+                                         const mu_albedo_frame *f, const float w[3]) {
     const float x = f->to[0] * w[0] + f->to[1] * w[1], y = f->to[2] * w[0] + f->to[3] * w[1];
-    const float r = sqrtf(x * x + y * y), n = r + w[2], ax = f->k * fabsf(x), ay = fabsf(y);
-    const float u = ax + ay > 0 ? ay / (ax + ay) : 0.5f, across = f->k * u;
+    const float r2 = x * x + y * y, r = sqrtf(r2), n = r + w[2], flat = f->ratio;
+    const float X = r > 0 ? f->k * fabsf(x) : f->k, Y = r > 0 ? fabsf(y) : f->k, both = X + Y,
+                least = X + flat * Y;
+    const int round = t->columns == 1;
+    const float u = round ? 0.5f : fminf(log1pf((1 - flat) * Y / least) / f->log, 1);
+    const float around =
+        round ? 0.63661977f * f->det
+              : f->k * f->det * (1 - flat) * (r > 0 ? r2 : 1 + f->k * f->k) / (f->log * both * least);
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
     const float still = w[2] * (n + r) / (n * n); /* 1 - (r / n)² */
     float rest = still, part = 1;
-    for (int k = 0; k < t->roots; k++) rest = sqrtf(rest), part /= 2;
-    const float row = albedo_row(t, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
+    for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2;
+    const float row = albedo_row(side, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
     return (albedo_place){(quadrant * t->columns + j) * ALBEDO_ROWS + i, column - (float)j, row - (float)i,
-                          2 * part * (still > 0 ? rest / still : 1e30f) * f->det *
-                              ((1 - u) * (1 - u) + across * across) / (f->k * n * n * n)};
+                          2 * part * (still > 0 ? rest / still : 1e30f) * around / (n * n * n)};
 }
 
 static inline int albedo_cell(float *x, int log) {
@@ -113,13 +122,14 @@ static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *sid
     const float share = side->cumulative[cell] - (cell ? side->cumulative[cell - 1] : 0);
     const float rows = (float)(ALBEDO_ROWS << p->log_s),
                 row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
-    const float over_height = (t->rooted ? rows * rows / (2 * row + 1) : rows) / (t->quadrants == 1 ? 4 : 1);
+    const float over_height =
+        (side->rooted ? rows * rows / (2 * row + 1) : rows) / (t->quadrants == 1 ? 4 : 1);
     return fminf(share * (float)(t->columns << p->log_u) * over_height * at.stretch, 0x1p+126f);
 }
 
 /* The direction at u and S of a quadrant. */
-void mu_albedo_direction(const mu_albedo *t, const mu_albedo_frame *f, int quadrant, float u, float s,
-                         float w[3]);
+void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const mu_albedo_frame *f,
+                         int quadrant, float u, float s, float w[3]);
 /* A direction of the lobe. */
 void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, float u0,
                     float u1, float w[3]);
@@ -127,6 +137,12 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
 void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumulative);
 /* The average over another frame. */
 double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side);
+
+/* What quadratures came to: panels of 11 slopes, and by how much the worst of them missed what was allowed. */
+typedef struct albedo_effort {
+    size_t panels;
+    double off;
+} albedo_effort;
 
 /* What tables are made of: a surface that scatters singly, at an M of its own or another, blurred or not. */
 typedef struct albedo_source {
@@ -136,20 +152,23 @@ typedef struct albedo_source {
     float blur;
     double error;                      /* that E may have */
     int halvings;                      /* of a patch along an axis, at most ALBEDO_HALVINGS */
-    int roots;                         /* 1 + n; 0: chosen */
+    const mu_albedo *like;             /* whose n and sqrt it takes; NULL: chosen */
     int trusting;                      /* not every cell is tested */
     const struct albedo_slope *slopes; /* of a histogram */
+    albedo_effort *effort;             /* so far */
+    size_t panels;                     /* that refining a table may take, of that */
 } albedo_source;
 /* Makes a table in `most` floats; returns how many it took. */
 size_t mu_albedo_make(const albedo_source *source, mu_albedo *out, float *values, size_t most);
 /* Where slopes crowd, in slope units: gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too. */
 double mu_albedo_core(const albedo_source *source, const mu_closure_f *c);
 
-/* E(wo) of a closure of single scattering, by panels of azimuth that are halved until they agree to within `allowed`
- * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units. */
-float albedo_integral_f(const mu_closure_f *c, double core, double allowed);
+/* E(wo) of a closure of single scattering, by wedges of azimuth that are halved until they agree to within `allowed`
+ * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units; `effort` may be NULL, and is added to. */
+float albedo_integral_f(const mu_closure_f *c, double core, double allowed, albedo_effort *effort);
 /* F G2 of what a facet reflects, and (1 - F) G2 of what it refracts; its unit normal, and the cosine that it faces wo by. */
-double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing);
+enum { ALBEDO_REFLECTED = 1, ALBEDO_REFRACTED = 2, ALBEDO_BOTH = 3 };
+double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing, int ways);
 
 /* E(wo) of a histogram: slopes in slope units, and their weights, made once for all views (albedo_histogram.c). */
 enum { ALBEDO_SLOPES = 1 << 11 };

@@ -64,9 +64,8 @@ static float average_at(const float *log_average, const corner c[3]) {
     return expf(sum);
 }
 
-void mu_albedo_grid_choose(const albedo_grid *grid, const float v[4], mu_lobe *out) {
-    const float a = mu_albedo_lay(v, &out->frame),
-                b = a * out->frame.along * out->frame.along, *const n = mu_albedo_nodes;
+void mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *out) {
+    const float a = mu_albedo_lay(v, &out->frame), b = a * out->frame.ratio, *const n = mu_albedo_nodes;
     float x = log2f(a), y = log2f(b);
     const int i = interval(&x), j = interval(&y);
     corner c[3];
@@ -84,20 +83,22 @@ void mu_albedo_grid_choose(const albedo_grid *grid, const float v[4], mu_lobe *o
 }
 
 /* s M^-1 midway between nodes. */
-static void view_at(int twice_i, int twice_j, float v[4]) {
+static void view_at(int twice_i, int twice_j, double v[4]) {
     const int at[2] = {twice_i, twice_j};
-    float rough[2];
+    double rough[2];
     for (int k = 0; k < 2; k++)
-        rough[k] = exp2f((mu_albedo_nodes[at[k] / 2] + mu_albedo_nodes[(at[k] + 1) / 2]) / 2);
+        rough[k] = exp2((double)(mu_albedo_nodes[at[k] / 2] + mu_albedo_nodes[(at[k] + 1) / 2]) / 2);
     v[0] = rough[0], v[1] = v[2] = 0, v[3] = rough[1];
 }
 
 /* 1 - E of single scattering at V, toward w. */
-static float lost_of(const albedo_source *source, const float v[4], const float w[3]) {
-    const float unit = (float)source->surface->unit, m[4] = {unit / v[0], 0, 0, unit / v[3]};
+static float lost_of(const albedo_source *source, const double v[4], const float w[3]) {
+    const double unit = source->surface->unit;
+    const float m[4] = {(float)(unit / v[0]), 0, 0, (float)(unit / v[3])};
     closure c;
     if (!MU(mu_bind)(source->surface, w, m, &c)) return 1;
-    return 1 - MU(albedo_integral)(&c, mu_albedo_core(source, &c), fmin(source->error / 4, 1e-3));
+    return 1 -
+           MU(albedo_integral)(&c, mu_albedo_core(source, &c), fmin(source->error / 4, 1e-3), source->effort);
 }
 
 /* The most that tables are off between nodes: views at heights from an eighth to eight times the roughness of their azimuth. */
@@ -105,14 +106,13 @@ static float measure_gap(const albedo_source *source, const albedo_grid *grid) {
     float most = 0;
     for (int i = 3; i < 2 * PROMISED; i += 2)
         for (int j = 3; j <= i; j += 2) {
-            float v[4];
+            double v[4];
             mu_lobe lobe;
             view_at(i, j, v);
             mu_albedo_grid_choose(grid, v, &lobe);
             for (int k = 0; k < PROBES * PROBES; k++) {
-                const double psi = PI / 2 * (k % PROBES + 0.5) / PROBES, a = (double)v[0], b = (double)v[3],
-                             x = cos(psi), y = sin(psi) * sqrt(a / b),
-                             z = hypot(a * x, b * y) * exp2(2 * (k / PROBES) - 3),
+                const double psi = PI / 2 * (k % PROBES + 0.5) / PROBES, a = v[0], b = v[3], x = cos(psi),
+                             y = sin(psi) * sqrt(a / b), z = hypot(a * x, b * y) * exp2(2 * (k / PROBES) - 3),
                              length = sqrt(x * x + y * y + z * z);
                 const float w[3] = {(float)(x / length), (float)(y / length), (float)(z / length)};
                 float density;
@@ -127,7 +127,7 @@ static float measure_gap(const albedo_source *source, const albedo_grid *grid) {
 static void fill_averages(const albedo_grid *grid, int side, float *out) {
     for (int i = 0; i < 2 * ALBEDO_NODES - 1; i++)
         for (int j = 0; j <= i; j++) {
-            float v[4];
+            double v[4];
             mu_lobe lobe;
             view_at(i, j, v);
             mu_albedo_grid_choose(grid, v, &lobe);
@@ -139,6 +139,7 @@ size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *v
                            albedo_grid *out, float *unsure) {
     const int sides = like->surface->transmission ? 2 : 1;
     albedo_source source = *like;
+    source.panels = ALBEDO_PANELS * 3 / 4 / 2 / ALBEDO_GRID_TABLES;
     source.trusting = 1, source.error /= 2; /* the other half is for what lies between */
     size_t used = (size_t)(sides * ALBEDO_GRID_AVERAGES);
     float worst = 0;
@@ -149,7 +150,7 @@ size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *v
                                 (float)(source.surface->unit / exp2((double)mu_albedo_nodes[j]))};
             source.transform = m, source.halvings = i > PROMISED ? STEEP_HALVINGS : GRID_HALVINGS;
             /* it changes slowly, but where slopes are steep */
-            source.roots = j == i || i >= PROMISED || j % ROOTS_HOLD == 1 ? 0 : 1 + t[-1].roots;
+            source.like = j == i || i >= PROMISED || j % ROOTS_HOLD == 1 ? NULL : &t[-1];
             const size_t left = most - used, own = (size_t)(sides * ALBEDO_GRID_MOST);
             used += mu_albedo_make(&source, t, values + used, left < own ? left : own);
             for (int side = 0; side < sides && i <= PROMISED; side++)

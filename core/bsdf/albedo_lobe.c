@@ -15,13 +15,15 @@ static const double node[4] = {0.06943184420297371, 0.33000947820757187, 0.66999
 static const double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                  0.17392742256872693};
 
-void mu_albedo_direction(const mu_albedo *t, const mu_albedo_frame *f, int quadrant, float u, float s,
-                         float w[3]) {
+void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const mu_albedo_frame *f,
+                         int quadrant, float u, float s, float w[3]) {
     float rest = fmaxf(1 - s, 0);
-    for (int k = 0; k < t->roots; k++) rest *= rest;
-    const float root = t->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)),
+    for (int k = 0; k < side->roots; k++) rest *= rest;
+    const float root = side->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)),
                 r = root * (1 + root) / fmaxf(rest, 1e-7f);
-    const float x = 1 - u, y = f->k * u, scale = r / sqrtf(x * x + y * y);
+    const int round = t->columns == 1;
+    const float x = round ? cosf(u * (float)(PI / 2)) : -expm1f((u - 1) * f->log) / f->k,
+                y = round ? sinf(u * (float)(PI / 2)) : expm1f(u * f->log), scale = r / hypotf(x, y);
     const float q[2] = {quadrant & 1 ? -scale * x : scale * x, quadrant & 2 ? -scale * y : scale * y};
     w[0] = f->from[0] * q[0] + f->from[1] * q[1];
     w[1] = f->from[2] * q[0] + f->from[3] * q[1];
@@ -33,9 +35,9 @@ static void integrate_panel(const mu_albedo *t, const mu_albedo_frame *f, const 
                             int quadrant, double u0, double u1, double s0, double s1, double sums[2]) {
     for (int i = 0; i < 16; i++) {
         float w[3];
-        mu_albedo_direction(t, f, quadrant, (float)(u0 + (u1 - u0) * node[i / 4]),
+        mu_albedo_direction(t, side, f, quadrant, (float)(u0 + (u1 - u0) * node[i / 4]),
                             (float)(s0 + (s1 - s0) * node[i % 4]), w);
-        const albedo_place at = albedo_locate(t, f, w);
+        const albedo_place at = albedo_locate(t, side, f, w);
         const double cosines =
             weight[i / 4] * weight[i % 4] * (u1 - u0) * (s1 - s0) * (double)w[2] / (double)at.stretch;
         sums[0] += cosines * (double)albedo_lost(side, at), sums[1] += cosines;
@@ -52,7 +54,7 @@ static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_alb
     integrate_panel(t, f, side, quadrant, u0, u1, s0, high, sums);
 }
 
-/* Along u a cell at 0 is halved toward it: under a strong anisotropy that is where most azimuths are. */
+/* Along u a cell at 0 is halved toward it: where u is a logarithm, that is where most azimuths are. */
 static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
                     double u0, double u1, double s0, double s1, double *cosines) {
     double sums[2] = {0, 0};
@@ -60,7 +62,7 @@ static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
         integrate(t, f, side, quadrant, u0, u1, s0, s1, sums);
     } else {
         double high = u1;
-        for (; high > (double)f->along * u1; high /= 2)
+        for (; high * (double)f->log > 0.5; high /= 2)
             integrate(t, f, side, quadrant, high / 2, high, s0, s1, sums);
         integrate(t, f, side, quadrant, 0, high, s0, s1, sums);
     }
@@ -81,7 +83,7 @@ static double integrate_cells(const mu_albedo *t, const mu_albedo_frame *f, cons
                          row = (k % ALBEDO_ROWS + (double)(i % up) / up) / ALBEDO_ROWS;
             const double sum =
                 share(t, f, side, k / ALBEDO_ROWS / t->columns, u, u + 1.0 / across / t->columns,
-                      albedo_s(t, row), albedo_s(t, row + 1.0 / up / ALBEDO_ROWS), &cosines);
+                      albedo_s(side, row), albedo_s(side, row + 1.0 / up / ALBEDO_ROWS), &cosines);
             if (cells) cells[p->cell + (uint32_t)i] = (float)sum;
             *total += sum;
         }
@@ -128,9 +130,10 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
         within = 4 * within - (float)quadrant;
     }
     const float u = ((float)(i / up) + within) / (float)(1 << p->log_u);
-    const double row = patch % ALBEDO_ROWS + (double)(i % up) / up, from = albedo_s(t, row / ALBEDO_ROWS),
-                 to = albedo_s(t, (row + 1.0 / up) / ALBEDO_ROWS);
-    mu_albedo_direction(t, f, quadrant, ((float)(patch / ALBEDO_ROWS % t->columns) + u) / (float)t->columns,
+    const double row = patch % ALBEDO_ROWS + (double)(i % up) / up, from = albedo_s(side, row / ALBEDO_ROWS),
+                 to = albedo_s(side, (row + 1.0 / up) / ALBEDO_ROWS);
+    mu_albedo_direction(t, side, f, quadrant,
+                        ((float)(patch / ALBEDO_ROWS % t->columns) + u) / (float)t->columns,
                         (float)(from + (to - from) * (double)u1), w);
 }
 

@@ -9,28 +9,26 @@
  *
  *     E(wo) = 1/cos_o  integral of P22(u) max(0, wo.(mu, 1)) [F G2(wo, reflected) + (1 - F) G2(wo, refracted)] du
  *
- * in polar coordinates of u, by Kronrod's rule in azimuth, in quarters that face the viewer or do not (at grazing view the
- * integrand has an edge between), and by Gauss's in t = asinh(length / core), which is linear in the core of a distribution and
- * logarithmic in its tail. Along each azimuth the facets that reflect wo upwards lie where
- * cos_o |mu|² - 2 wo.mu - cos_o < 0; those that face it lie on one side of a line, and total reflection begins on a conic:
+ * over mu, in polar coordinates about the mean slope that M and the tilt make. Slopes are spread over A and B along the axes of M;
+ * those that reflect wo upwards over a disk, between its chords. What is the lesser along an axis is 1 in y, in whose azimuths
+ * the integrand is spread evenly, however much rougher or smoother than the other one axis is. What is refracted is of all slopes, so
+ * where disk and slopes differ it has an integral of its own. Azimuths by Kronrod's rule, in quarters that face the viewer
+ * or do not (at grazing view the integrand has an edge between); lengths by it, too, in t = asinh(length / core), which is
+ * linear in the core of a distribution and logarithmic in its tail. Along each azimuth the facets that reflect wo upwards lie
+ * where cos_o |mu|² - 2 wo.mu - cos_o < 0; those that face it lie on one side of a line, and total reflection begins on a conic:
  * between the roots of these the integrand is smooth.
+ *
+ * The wedge of azimuths that is off the most is halved next, WEDGES times at most: what a value costs has a bound.
  */
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/multiple.h"
+#include "core/bsdf/singular.h"
 #include "core/bsdf/snell.h"
 
 #if MU_REAL_BITS == 24
 
-/* Halvings of a panel of azimuths, at most. */
-enum { DEEPEST = 8 };
-
-/* Gauss-Legendre on [0, 1], 8 nodes (Abramowitz and Stegun, table 25.4). */
-static const double node[8] = {0.01985507175123188, 0.10166676129318664, 0.2372337950418355,
-                               0.4082826787521751,  0.5917173212478249,  0.7627662049581645,
-                               0.8983332387068134,  0.9801449282487681};
-static const double weight[8] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
-                                 0.18134189168918100, 0.18134189168918100, 0.15685332293894364,
-                                 0.11119051722668724, 0.05061426814518813};
+/* Wedges at most; panels of lengths at most, beyond which nothing is halved any more; and halvings of one of them. */
+enum { WEDGES = 64, PANELS = 1 << 12, DEEPEST = 5 };
 
 /* Kronrod's extension of Gauss-Legendre by 5 nodes, on [0, 1] (Kronrod 1965; solved for in 40 digits from Stieltjes's
  * polynomial), and the weights of those 5. */
@@ -58,19 +56,24 @@ static const double widest = 2.5, left_out = 0.1;
 typedef struct ray {
     const closure *c;
     double level[2], along[2];
-    double core;       /* where slopes crowd */
-    double negligible; /* of an azimuth */
+    double core;    /* where slopes crowd */
+    double allowed; /* of an azimuth */
+    int ways;       /* of albedo_passed */
+    size_t work;    /* panels of lengths so far */
 } ray;
 
-double MU(albedo_passed)(const closure *c, const double unit[3], double facing) {
+double MU(albedo_passed)(const closure *c, const double unit[3], double facing, int ways) {
     const float normal[3] = {(float)unit[0], (float)unit[1], (float)unit[2]};
     float i[3], F = 1;
     double sum = 0;
     if (c->surface->transmission) {
         F = MU(fresnel_dielectric)(c->eta, fminf((float)facing, 1));
-        (void)refract(c->eta, c->wo, normal, (float)facing, i);
-        if (F < 1 && i[2] > 0) sum += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
+        if (F < 1 && ways & ALBEDO_REFRACTED) {
+            (void)refract(c->eta, c->wo, normal, (float)facing, i);
+            if (i[2] > 0) sum += (double)((1 - F) * c->kernel->shadowing(c, i, 1));
+        }
     }
+    if (!(ways & ALBEDO_REFLECTED)) return sum;
     for (int k = 0; k < 3; k++) i[k] = (float)(2 * facing * unit[k] - (double)c->wo[k]);
     if (i[2] > 0) sum += (double)(F * c->kernel->shadowing(c, i, 0));
     return sum;
@@ -85,23 +88,33 @@ static double integrand(const ray *l, double r) {
     const double unit[3] = {m[0] / length, m[1] / length, 1 / length};
     const float normal[3] = {(float)unit[0], (float)unit[1], (float)unit[2]};
     return (double)c->kernel->density(c, normal) / (length2 * length2) * (seen / (double)c->wo[2]) *
-           MU(albedo_passed)(c, unit, seen / length);
+           MU(albedo_passed)(c, unit, seen / length, l->ways);
 }
 
-/* The integral over r in [from, to], times r dr, panel by panel outwards until they add nothing to *sum. */
-static void stretch(const ray *l, double from, double to, double *sum) {
-    const double core = l->core, t0 = asinh(from / core), t1 = asinh(to / core);
+/* A panel of t = asinh(r / core), halved until both rules agree: a steep tail that begins far from the center needs that. */
+static double lengths(ray *l, double from, double width, int deeper) {
+    double sum = 0, gauss = 0;
+    for (int k = 0; k < KRONROD; k++) {
+        const double e = exp(from + width * kronrod[k].at), r = l->core * (e - 1 / e) / 2;
+        const double f = integrand(l, r) * r * l->core * (e + 1 / e) / 2 * width;
+        sum += kronrod[k].weight * f, gauss += kronrod[k].gauss * f;
+    }
+    if (++l->work >= PANELS || !deeper || fabs(sum - gauss) <= l->allowed) return sum;
+    return lengths(l, from, width / 2, deeper - 1) + lengths(l, from + width / 2, width / 2, deeper - 1);
+}
+
+/* The integral over r in [from, to], times r dr, panel by panel outwards until, past the largest, they add nothing to *sum. */
+static void stretch(ray *l, double from, double to, double *sum) {
+    const double t0 = asinh(from / l->core), t1 = asinh(to / l->core);
     if (!(t1 > t0)) return;
     const int panels = (int)ceil((t1 - t0) / widest);
     const double width = (t1 - t0) / panels;
+    double before = 0;
     for (int i = 0; i < panels; i++) {
-        double part = 0;
-        for (int k = 0; k < 8; k++) {
-            const double e = exp(t0 + width * (i + node[k])), r = core * (e - 1 / e) / 2;
-            part += weight[k] * integrand(l, r) * r * core * (e + 1 / e) / 2;
-        }
-        *sum += part * width;
-        if (part * width <= fmax(1e-5 * *sum, l->negligible)) return;
+        const double part = lengths(l, t0 + width * i, width, DEEPEST);
+        *sum += part;
+        if (part < before && part <= fmax(1e-5 * *sum, left_out * l->allowed)) return;
+        before = part;
     }
 }
 
@@ -113,7 +126,7 @@ static void roots(double a, double b, double c, double r[2]) {
 }
 
 /* Its stretches between the places where the integrand has edges. */
-static double azimuth(const ray *l) {
+static double azimuth(ray *l) {
     const closure *c = l->c;
     const double o[2] = {(double)c->wo[0], (double)c->wo[1]}, z = (double)c->wo[2], *at = l->level,
                  *by = l->along;
@@ -124,7 +137,7 @@ static double azimuth(const ray *l) {
     double edge[5], sum = 0;
     roots(z * by2, z * at_by - o_by, z * at2 - 2 * seen + z, edge); /* between: reflected upwards */
     for (int k = 0; k < 2; k++) edge[k] = fmin(fmax(edge[k], 0), most);
-    if (!c->surface->transmission) {
+    if (!(l->ways & ALBEDO_REFRACTED) && !c->surface->transmission) {
         stretch(l, edge[0], edge[1], &sum);
         return sum;
     }
@@ -146,49 +159,96 @@ static double azimuth(const ray *l) {
     return sum;
 }
 
-/* One panel of azimuths by Kronrod's rule, and by Gauss's, of every other node. */
-static double panel(ray *l, const double v[4], double from, double width, double *gauss) {
-    double sum = 0;
-    *gauss = 0;
+/* A wedge of azimuths by Kronrod's rule, and what Gauss's, of every other node, is off it. */
+typedef struct wedge {
+    double from, width, sum, off;
+} wedge;
+
+static wedge integrate(ray *l, const double v[4], double from, double width) {
+    double sum = 0, gauss = 0;
     for (int j = 0; j < KRONROD; j++) {
         const double phi = from + width * kronrod[j].at, u[2] = {cos(phi), sin(phi)};
         l->along[0] = v[0] * u[0] + v[2] * u[1], l->along[1] = v[1] * u[0] + v[3] * u[1];
         const double f = azimuth(l) * width;
-        sum += kronrod[j].weight * f, *gauss += kronrod[j].gauss * f;
+        sum += kronrod[j].weight * f, gauss += kronrod[j].gauss * f;
     }
-    return sum;
+    return (wedge){from, width, sum, fabs(sum - gauss)};
 }
 
-/* Halved until both rules agree: anisotropy, tilt and total reflection make some azimuths sharp. */
-static double refine(ray *l, const double v[4], double from, double width, double allowed, int deeper) {
-    double gauss;
-    const double sum = panel(l, v, from, width, &gauss), half = width / 2;
-    if (fabs(sum - gauss) <= allowed || !deeper) return sum;
-    return refine(l, v, from, half, allowed / 2, deeper - 1) +
-           refine(l, v, from + half, half, allowed / 2, deeper - 1);
+/* Halves the wedge that is off the most until all of them are off by no more than is allowed, or there are too many: tilt and
+ * total reflection make some azimuths sharp. */
+static double refine(ray *l, const double v[4], double facing, int quarters, double allowed, double *off) {
+    wedge w[WEDGES];
+    for (int k = 0; k < quarters; k++) w[k] = integrate(l, v, facing + PI / 2 * k, PI / 2);
+    for (int count = quarters;; count++) {
+        double sum = 0;
+        int worst = 0;
+        *off = 0;
+        for (int k = 0; k < count; k++) {
+            sum += w[k].sum, *off += w[k].off;
+            if (w[k].off > w[worst].off) worst = k;
+        }
+        if (*off <= allowed || count == WEDGES || l->work >= PANELS) return sum;
+        const double from = w[worst].from, half = w[worst].width / 2;
+        w[worst] = integrate(l, v, from, half);
+        w[count] = integrate(l, v, from + half, half);
+    }
 }
 
-float MU(albedo_integral)(const closure *c, double core, double allowed) {
+/* What is 1 in y along both axes, of rows `axis`. */
+static void spread(const singular *s, const double axis[4], const float wo[3], double out[2]) {
+    const double rough[2] = {s->large, fabs(s->small)}, z = (double)wo[2];
+    double along[2], reach[2];
+    for (int k = 0; k < 2; k++) {
+        along[k] = fabs(axis[2 * k] * (double)wo[0] + axis[2 * k + 1] * (double)wo[1]) / z;
+        reach[k] = fmin(rough[k], 1 + 2 * along[k]);
+    }
+    for (int k = 0; k < 2; k++) out[k] = fmin(rough[k], 1 + 2 * along[k] + sqrt(2 * reach[!k] * along[!k]));
+}
+
+/* Of some ways of light, `e` of which is 1 in y along the axes. */
+static double integrate_ways(ray *l, const singular *s, const double e[2], double core, double allowed,
+                             albedo_effort *effort) {
+    const closure *c = l->c;
+    const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]};
+    const double a = e[0] / s->large, b = e[1] / fabs(s->small);
+    double v[4], center[4], unused[4];
+    singular_matrix(s, e[0], copysign(e[1], s->small), v, unused);
+    singular_matrix(s, e[0] * a, e[1] * copysign(b, s->small), center, unused);
+    l->core = fmin(core / fmax(a, b), 1);
+    l->level[0] = -(center[0] * t[0] + center[2] * t[1]),
+    l->level[1] = -(center[1] * t[0] + center[3] * t[1]);
+    const double det = e[0] * e[1], facing = atan2(v[2] * (double)c->wo[0] + v[3] * (double)c->wo[1],
+                                                   v[0] * (double)c->wo[0] + v[1] * (double)c->wo[1]);
+    /* in a map that is a similarity both sides of the plane of incidence are alike */
+    const int alike = t[0] == 0 && t[1] == 0 && !(c->kernel->traits & ANISOTROPIC) &&
+                      s->large <= (1 + 1e-6) * fabs(s->small) && e[0] <= (1 + 1e-6) * e[1];
+    const int twice = alike ? 2 : 1;
+    l->allowed = allowed / (2 * PI * det), l->work = 0;
+    double off;
+    const double sum = refine(l, v, facing, alike ? 2 : 4, allowed / (twice * det), &off);
+    if (effort) effort->panels += l->work, effort->off = fmax(effort->off, off * det * twice - allowed);
+    return sum * twice * det;
+}
+
+float MU(albedo_integral)(const closure *c, double core, double allowed, albedo_effort *effort) {
     if (!(c->wo[2] > 0)) return 1;
     const double z = (double)c->map.view_z, v[4] = {(double)c->map.view[0] / z, (double)c->map.view[1] / z,
                                                     (double)c->map.view[2] / z, (double)c->map.view[3] / z};
-    const double t[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]},
-                 det = fabs(v[0] * v[3] - v[1] * v[2]);
-    ray l = {.c = c, .core = core};
-    l.level[0] = -(v[0] * t[0] + v[2] * t[1]), l.level[1] = -(v[1] * t[0] + v[3] * t[1]);
-    const double facing = atan2(v[2] * (double)c->wo[0] + v[3] * (double)c->wo[1],
-                                v[0] * (double)c->wo[0] + v[1] * (double)c->wo[1]);
-    /* in a map that is a similarity both sides of the plane of incidence are alike */
-    const double across = v[0] * v[2] + v[1] * v[3],
-                 along = v[0] * v[0] + v[1] * v[1] - v[2] * v[2] - v[3] * v[3];
-    const int alike = t[0] == 0 && t[1] == 0 && !(c->kernel->traits & ANISOTROPIC) &&
-                      hypot(2 * across, along) <= 1e-6 * det;
-    const int quarters = alike ? 2 : 4;
-    l.negligible = left_out * allowed / (2 * PI * det);
-    double sum = 0;
-    for (int k = 0; k < quarters; k++)
-        sum += refine(&l, v, facing + PI / 2 * k, PI / 2, allowed / (4 * det), DEEPEST - 1);
-    return (float)fmin(sum * (alike ? 2 : 1) * det, 1);
+    const singular s = singular_of(v);
+    const double turn = (s.sum - s.difference) / 2; /* R(right): wo along the axes of M */
+    const double axis[4] = {cos(turn), -sin(turn), sin(turn), cos(turn)};
+    double e[2];
+    spread(&s, axis, c->wo, e);
+    const double rough[2] = {s.large, fabs(s.small)};
+    ray l = {.c = c, .ways = ALBEDO_REFLECTED};
+    if (!c->surface->transmission || (e[0] >= rough[0] && e[1] >= rough[1])) {
+        l.ways |= c->surface->transmission ? ALBEDO_REFRACTED : 0;
+        return (float)fmin(integrate_ways(&l, &s, e, core, allowed, effort), 1);
+    }
+    const double reflected = integrate_ways(&l, &s, e, core, allowed / 2, effort);
+    l.ways = ALBEDO_REFRACTED;
+    return (float)fmin(reflected + integrate_ways(&l, &s, rough, core, allowed / 2, effort), 1);
 }
 
 #endif

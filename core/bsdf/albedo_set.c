@@ -3,6 +3,7 @@
 /* albedo_set.c: makes the tables of a surface, and chooses among them. */
 #include "core/bsdf/albedo_set.h"
 #include "core/bsdf/multiple.h"
+#include "core/bsdf/singular.h"
 #include <string.h>
 
 #if MU_REAL_BITS == 24
@@ -12,9 +13,23 @@ static const float tilted_from = -6, tilted_to = 3, tilted_step = 0.5f;
 /* Floats that a table takes at most: alike in all azimuths, even along two axes, or tilted. */
 enum { FEW = 1 << 9, SOME = 1 << 13, MANY = 1 << 16, BLUR_HALVINGS = 4 };
 
-/* What the tables are made of: in float's range, where tables do not change any more with the roughness. */
+/* M = R(left) diag R(right), from which R(-left) takes what comes last, a turn of the world. For then float holds any M: an entry
+ * of M^-1 is as large as its column, and not as another axis that lies between the world's. What is round keeps its M. */
+static double turn_of(const mu_definition *d) {
+    const singular s = singular_of(d->transform);
+    return mu_transform_is_similarity(d->transform) ? 0 : (s.sum + s.difference) / 2;
+}
+static void turn_back(const mu_definition *d, double m[4]) {
+    const singular s = singular_of(d->transform);
+    const double right = (s.sum - s.difference) / 2, c = cos(right), sine = sin(right);
+    if (mu_transform_is_similarity(d->transform)) return;
+    m[0] = s.large * c, m[1] = -s.large * sine, m[2] = s.small * sine, m[3] = s.small * c;
+}
+
+/* What the tables are made of. */
 static mu_definition reduced(const mu_definition *d) {
     mu_definition single = *d;
+    turn_back(d, single.transform);
     single.multiple = MU_SINGLE;
     single.sampler = MU_SAMPLE_VISIBLE;
     if (!d->transmission) single.fresnel = MU_FRESNEL_NONE;
@@ -87,28 +102,29 @@ static float next_blur(float step, float log_blur, float bend) {
 }
 
 /* s M^-1 of what blurring makes of a surface. */
-static void blurred_view(const surface *s, float blur, float v[4]) {
+static void blurred_view(const surface *s, float blur, double v[4]) {
     closure c;
     MU(mu_bind)(s, (const float[]){0, 0, 1}, NULL, &c);
     MU(mu_blur)(&c, blur);
-    for (int k = 0; k < 4; k++) v[k] = c.map.view[k] / c.map.view_z;
+    for (int k = 0; k < 4; k++) v[k] = (double)(c.map.view[k] / c.map.view_z);
 }
 
 static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used, size_t most) {
     const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
     const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f)),
                 last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
-                bend = least - 2 * log2f(out->level[0].frame.along), step = tilted ? tilted_step : 0;
+                bend = least - log2f(out->level[0].frame.ratio), step = tilted ? tilted_step : 0;
     float at = fmaxf(least, tilted ? tilted_from : mu_albedo_nodes[0]);
     source->halvings = BLUR_HALVINGS, source->trusting = 1;
     source->error *= tilted ? sides : 0.6;
     for (; out->levels <= ALBEDO_BLURS && at <= last; at = next_blur(step, at, bend)) {
         source->blur = exp2f(at) * 1.000001f;
+        source->panels = ALBEDO_PANELS * 3 / 4 / ALBEDO_BLURS;
         out->log_blur[out->levels - 1] = at;
         used += mu_albedo_make(source, &out->level[out->levels++], out->values + used, most - used);
     }
     for (int k = 0; k < 2 * out->levels - 3; k++) {
-        float v[4];
+        double v[4];
         mu_lobe lobe;
         const float blur = exp2f((out->log_blur[k / 2] + out->log_blur[(k + 1) / 2]) / 2) * 1.000001f;
         blurred_view(source->surface, blur, v);
@@ -144,8 +160,13 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     const mu_definition single = reduced(d);
     const size_t most = floats(d);
     char *const grid = (char *)out + values_bytes(d), *const single_at = grid + grids_bytes(d);
-    albedo_source source = {
-        .definition = &single, .error = d->compensation_error, .halvings = ALBEDO_HALVINGS};
+    albedo_effort effort = {0, 0};
+    albedo_source source = {.definition = &single,
+                            .error = d->compensation_error,
+                            .halvings = ALBEDO_HALVINGS,
+                            .effort = &effort,
+                            .panels = ALBEDO_PANELS /
+                                      (size_t)(d->compensation_blurs || d->compensation_varies ? 4 : 1)};
     source.surface = MU(mu_surface_make)(&single, single_at);
     albedo_slope slopes[ALBEDO_SLOPES];
     if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
@@ -159,6 +180,7 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     float own = 0;
     for (int k = 0; k < (d->transmission ? 2 : 1); k++) own = fmaxf(own, out->level[0].side[k].unsure);
     if (own > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, own);
+    for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
     out->bytes = sizeof *out + used * sizeof(float) + grids_bytes(d);
 }
 
@@ -169,7 +191,7 @@ void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {
     out->passes[0] = t->side[0].passes;
 }
 
-void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const float v[4], mu_lobe *out) {
+void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out) {
     const int last = set->levels - 2;
     int k = 0;
     if (last < 0) {

@@ -27,6 +27,8 @@ enum {
     ALBEDO_GRID_MEAN = 3 << 9, /* floats that a table takes as a mean, and at most */
     ALBEDO_GRID_MOST = 1 << 13
 };
+/* Work that refining the tables of a surface may take (albedo_effort): */
+enum { ALBEDO_PANELS = 16000000 };
 /* log2 of the roughnesses (albedo_grid.c). */
 extern const float mu_albedo_nodes[ALBEDO_NODES];
 /* How far a roughness is from one to another, all as log2: linear in A^1.5 / (1 + A^1.5), which follows both limits. */
@@ -43,7 +45,7 @@ static inline int albedo_grid_node(int i, int j) {
 }
 
 struct mu_albedo_set {
-    int blurs; /* there are tables for what is blurred */
+    int blurs;                              /* there are tables for what is blurred */
     int levels;                             /* 1 + blurs */
     float unsure;                           /* of level[0], and of the grids */
     size_t bytes;                           /* that it takes */
@@ -60,13 +62,13 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out);
 /* The tables of the definition's M. */
 void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out);
 /* Blurred to alpha, which makes V of s M^-1. */
-void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const float v[4], mu_lobe *out);
+void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out);
 
 /* Makes the tables of a grid in `most` floats; returns how many it took. */
 size_t mu_albedo_grid_make(const albedo_source *source, mu_albedo *table, float *values, size_t most,
                            albedo_grid *out, float *unsure);
 /* Its tables for V = s M^-1. */
-void mu_albedo_grid_choose(const albedo_grid *grid, const float v[4], mu_lobe *out);
+void mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *out);
 
 /* The frame in which a table of a lobe is read. */
 static inline const mu_albedo_frame *lobe_frame(const mu_lobe *l, const mu_albedo *t) {
@@ -88,7 +90,7 @@ static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], floa
     *density = 0;
     for (int k = 0; k < l->count; k++) {
         const mu_albedo *t = l->level[k];
-        const albedo_place at = albedo_locate(t, lobe_frame(l, t), w);
+        const albedo_place at = albedo_locate(t, &t->side[side], lobe_frame(l, t), w);
         lost += l->share[k] * albedo_lost(&t->side[side], at);
         *density += l->share[k] * albedo_density(t, &t->side[side], at);
     }

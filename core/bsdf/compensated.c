@@ -39,8 +39,8 @@ static real chance(const closure *c, real lost) {
 void MU(compensated_bind)(closure *c, real blur, int moved) {
     mu_lobe *l = &c->lobe;
     const mu_albedo_set *set = multiple_of(c->surface)->tables;
-    float v[4];
-    for (int k = 0; k < 4; k++) v[k] = (float)(c->map.view[k] / c->map.view_z);
+    double v[4];
+    for (int k = 0; k < 4; k++) v[k] = (double)(c->map.view[k] / c->map.view_z);
     if (moved && set->grid.table)
         mu_albedo_grid_choose(blur > 0 ? &set->blurred : &set->grid, v, l);
     else if (blur > 0)

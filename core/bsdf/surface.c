@@ -164,7 +164,7 @@ real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
     const mu_albedo_side *side = &t->side[s->transmission && w[2] < 0];
     const float up[3] = {(float)w[0], (float)w[1], (float)w[2]}, down[3] = {-up[0], -up[1], -up[2]};
     *average = 1 - R(side->average);
-    return 1 - R(albedo_lost(side, albedo_locate(t, &t->frame, w[2] < 0 ? down : up)));
+    return 1 - R(albedo_lost(side, albedo_locate(t, side, &t->frame, w[2] < 0 ? down : up)));
 }
 const mu_albedo_set *MU(mu_surface_tables)(const surface *s) {
     return s->compensated ? multiple_of(s)->tables : NULL;

@@ -2,10 +2,12 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* ibl_real.h: the part of ibl.h that exists once per precision. Included by it alone, twice. */
 
-/* Sigma by its axes: standard deviations of the slope along U = (turn[0], turn[1]) and along V, a quarter turn on. */
+/* Sigma by its axes: standard deviations of the slope along U = (turn[0], turn[1]) and along V, a quarter turn on; and the mean
+ * slope, of which the axis and its closed forms know nothing. */
 typedef struct MU_SUFFIX(mu_ibl_lobe) {
     MU_REAL sigma[2];
     MU_REAL turn[2]; /* cosine and sine of the angle from x to U */
+    MU_REAL mean[2];
 } MU_SUFFIX(mu_ibl_lobe);
 
 typedef struct MU_SUFFIX(mu_ibl_settings) {
@@ -38,7 +40,7 @@ typedef struct MU_SUFFIX(mu_ibl_axis) {
 /* k = 1, beta = 2.3, 16 samples, symmetric. */
 MU_SUFFIX(mu_ibl_settings) MU_SUFFIX(mu_ibl_settings_default)(void);
 
-/* Sigma's axes; the mean slope is left out, for the closed forms hold for one of 0. */
+/* Sigma's axes, and the mean. */
 MU_SUFFIX(mu_ibl_lobe) MU_SUFFIX(mu_ibl_lobe_of)(const mu_ibl_slopes *slopes);
 
 /* wo.z >= 0. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* reads.c: see reads.h. In float; compiled once. */
-#include "core/ibl/reads.h"
+#include "core/ibl/spread.h"
 
 #include "core/bsdf/real.h"
 
@@ -64,13 +64,14 @@ static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_
     return n;
 }
 
-size_t mu_ibl_reads(mu_ibl_technique technique, const mu_ibl_lobe_f *lobe, const float wo[3],
-                    const mu_ibl_settings_f *settings, mu_ibl_read *out) {
-    switch (technique) {
+size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out) {
+    switch (plan->technique) {
     case MU_IBL_BENT_NORMAL:
         return bent_normal(lobe, wo, out);
     case MU_IBL_MAJOR_AXIS:
-        return major_axis(lobe, wo, settings, out);
+        return major_axis(lobe, wo, &plan->settings, out);
+    case MU_IBL_LOBE:
+        return mu_ibl_spread_reads(&plan->spread, plan->settings.samples, lobe, wo, out);
     default:
         return split(lobe, wo, out);
     }

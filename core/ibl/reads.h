@@ -24,11 +24,27 @@ typedef struct mu_ibl_read {
  *     the mean of both, the paper's h1.
  * MU_IBL_BENT_NORMAL: Revie 2011 as Lagarde and Golubev 2018 have it: one read, mirrored at a normal that is bent across the
  *     grain, and sharper than h1.
- * MU_IBL_MAJOR_AXIS: N reads along the axis, all alike, Eq. (5). */
-typedef enum mu_ibl_technique { MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS } mu_ibl_technique;
+ * MU_IBL_MAJOR_AXIS: N reads along the axis, all alike, Eq. (5).
+ * MU_IBL_LOBE: N reads all over the lobe, each as wide as the lobe is across where it stands (spread.h). */
+typedef enum mu_ibl_technique { MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE } mu_ibl_technique;
 
-/* How many there are, at most MU_IBL_READS_MOST: 1, or settings->samples. wo.z > 0. */
-size_t mu_ibl_reads(mu_ibl_technique technique, const mu_ibl_lobe_f *lobe, const float wo[3],
-                    const mu_ibl_settings_f *settings, mu_ibl_read *out);
+/* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c). */
+typedef struct mu_ibl_spread {
+    float along[MU_IBL_READS_MOST], across[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
+    float step; /* between neighbours, in asinh of `along` */
+} mu_ibl_spread;
+
+/* What is decided once per picture. */
+typedef struct mu_ibl_plan {
+    mu_ibl_technique technique;
+    mu_ibl_settings_f settings;
+    mu_ibl_spread spread; /* of MU_IBL_LOBE */
+} mu_ibl_plan;
+
+/* samples from 1 to MU_IBL_READS_MOST. */
+void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan);
+
+/* How many there are, at most MU_IBL_READS_MOST: 1, or settings.samples. wo.z > 0. */
+size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out);
 
 #endif

@@ -25,7 +25,8 @@ MU(mu_ibl_lobe) MU(mu_ibl_lobe_of)(const mu_ibl_slopes *s) {
     const double small = large > 0 ? product_difference(s->xx / large, s->yy, s->xy / large, s->xy) : 0;
     const double angle = apart > 0 ? atan2(s->xy, half) / 2 : 0;
     return (MU(mu_ibl_lobe)){{R(sqrt(fmax(large, 0))), R(sqrt(fmax(small, 0)))},
-                             {R(cos(angle)), R(sin(angle))}};
+                             {R(cos(angle)), R(sin(angle))},
+                             {R(s->mean[0]), R(s->mean[1])}};
 }
 
 #if MU_REAL_BITS == 53

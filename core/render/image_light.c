@@ -20,8 +20,7 @@ typedef struct lit_material {
 } lit_material;
 
 struct mu_image_light {
-    mu_ibl_technique technique;
-    mu_ibl_settings_f settings;
+    mu_ibl_plan plan;
     mu_ibl_globe globe;
     float *memory; /* of the globe */
     lit_material *materials;
@@ -73,7 +72,7 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         memcpy(out[i].normal, &shading.frame.n, sizeof out[i].normal);
         if (!bright) continue;
         mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
-        const size_t n = mu_ibl_reads(light->technique, &lobe, shading.wo, &light->settings, reads);
+        const size_t n = mu_ibl_reads(&light->plan, &lobe, shading.wo, reads);
         out[i].reads = (uint32_t)n;
         mu_ibl_batch batch;
         batch.count = n;
@@ -114,7 +113,7 @@ static void survey_row(void *context, uint32_t y) {
     const uint32_t width = s->tracer->scene->film.width;
     mu_ibl_lobe_f *low = s->low + (size_t)y * s->light->count, *high = s->high + (size_t)y * s->light->count;
     for (uint32_t m = 0; m < s->light->count; m++)
-        low[m] = (mu_ibl_lobe_f){{FLT_MAX, FLT_MAX}, {1, 0}}, high[m] = (mu_ibl_lobe_f){{0, 0}, {1, 0}};
+        low[m] = (mu_ibl_lobe_f){.sigma = {FLT_MAX, FLT_MAX}, .turn = {1, 0}}, high[m] = (mu_ibl_lobe_f){.turn = {1, 0}};
     for (uint32_t x = 0; x < width; x += MU_PACKET) {
         const uint32_t count = width - x < MU_PACKET ? width - x : MU_PACKET;
         mu_ray rays[MU_PACKET] = {{.near = 0}};
@@ -175,9 +174,8 @@ static _Bool lights_around(const mu_scene *scene, mu_error *error) {
 }
 
 void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *settings) {
-    light->technique = settings->technique;
-    light->settings = mu_ibl_settings_default_f();
-    light->settings.samples = settings->reads;
+    const mu_ibl_settings_f own = {settings->k, settings->beta, settings->reads, settings->appendix_c};
+    mu_ibl_plan_make(settings->technique, &own, &light->plan);
 }
 
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error) {

@@ -45,7 +45,8 @@ _Bool mu_lobe_at(const mu_lobe_source *source, const mu_shading *shading, mu_ibl
     const musurf_moments *s = &source->moments;
     /* M^-T = (d, -c; -b, a) / det, and covariance M^-T S M^-1 */
     const double k = 1 / (det * det), xx = s->xx, xy = s->xy, yy = s->yy;
-    const mu_ibl_slopes here = {{0, 0},
+    const double *mean = s->mean, first = (d * mean[0] - c * mean[1]) / det, second = (a * mean[1] - b * mean[0]) / det;
+    const mu_ibl_slopes here = {{first, second},
                                 k * (d * (d * xx - c * xy) - c * (d * xy - c * yy)),
                                 k * (d * (a * xy - b * xx) - c * (a * yy - b * xy)),
                                 k * (a * (a * yy - b * xy) - b * (a * xy - b * xx))};

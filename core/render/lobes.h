@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * lobes.h: the lobe of a material at a hit: its slopes' covariance by its axes, in the frame of shading (core/ibl/ibl.h). The
- * mean slope of a tilt is left out.
+ * lobes.h: the lobe of a material at a hit: its slopes' covariance by its axes, and their mean, in the frame of shading
+ * (core/ibl/ibl.h).
  */
 #ifndef MU_LOBES_H
 #define MU_LOBES_H

@@ -77,10 +77,11 @@ _Bool mu_read_film(mu_reader *reader) {
     return !place.value || mu_read_float(&place, "radius", 1e-3, 64, &film->filter_radius, error);
 }
 
-const char *const mu_integrators[] = {"path", "split", "bent-normal", "major-axis", NULL};
+const char *const mu_integrators[] = {"path", "split", "bent-normal", "major-axis", "lobe", NULL};
+static const char *const shifts[] = {"symmetric", "printed", NULL};
 
 void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
-    static const mu_ibl_technique techniques[] = {MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS};
+    static const mu_ibl_technique techniques[] = {MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE};
     integrator->by_image = index > 0;
     if (index) integrator->technique = techniques[index - 1];
 }
@@ -88,18 +89,23 @@ void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
 _Bool mu_read_integrator(mu_reader *reader) {
     mu_integrator_settings *integrator = &reader->scene->integrator;
     mu_error *error = reader->error;
-    size_t by = 0;
+    size_t by = 0, shift = 0;
     const mu_place place = mu_place_member(&reader->root, "integrator");
-    *integrator =
-        (mu_integrator_settings){.depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = 16, .seed = 0};
+    const mu_ibl_settings_f axis = mu_ibl_settings_default_f();
+    *integrator = (mu_integrator_settings){
+        .depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = 16, .k = axis.k, .beta = axis.beta, .seed = 0};
     if (!place.value) return 1;
     if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
         !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||
         !mu_read_count(&place, "depth", 1, 4096, &integrator->depth, error) ||
         !mu_read_count(&place, "roulette", 1, 4096, &integrator->roulette, error) ||
         !mu_read_count(&place, "reads", 1, MU_IBL_READS_MOST, &integrator->reads, error) ||
+        !mu_read_float(&place, "k", 1e-3, 1e3, &integrator->k, error) ||
+        !mu_read_float(&place, "beta", 0, 1e3, &integrator->beta, error) ||
+        !mu_read_choice(&place, "appendix_c", shifts, &shift, error) ||
         !mu_read_choice(&place, "by", mu_integrators, &by, error))
         return 0;
+    integrator->appendix_c = shift ? MU_IBL_PRINTED : MU_IBL_SYMMETRIC;
     mu_integrator_choose(integrator, by);
     const mu_place seed = mu_place_member(&place, "seed"), lights = mu_place_member(&place, "light_sampling");
     _Bool sampled = 1;

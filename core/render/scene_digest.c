@@ -59,6 +59,9 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
         digest = mix(digest, scene->materials[i].material.digest);
     digest = mix(digest, scene->integrator.by_image ? 1u + (uint64_t)scene->integrator.technique : 0);
     digest = mix(digest, scene->integrator.reads);
+    digest = add(digest, &scene->integrator.k, sizeof scene->integrator.k);
+    digest = add(digest, &scene->integrator.beta, sizeof scene->integrator.beta);
+    digest = mix(digest, scene->integrator.appendix_c);
     const char *plugin;
     for (size_t i = 0; (plugin = mu_plugins_opened(scene->plugins, i)); ++i)
         digest = add_file(digest, plugin);

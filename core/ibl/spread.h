@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* spread.h: reads all over a lobe (spread.c). For reads.c. */
+#ifndef MU_IBL_SPREAD_H
+#define MU_IBL_SPREAD_H
+
+#include "core/ibl/reads.h"
+
+void mu_ibl_spread_make(size_t count, mu_ibl_spread *spread);
+size_t mu_ibl_spread_reads(const mu_ibl_spread *spread, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
+                           mu_ibl_read *out);
+
+#endif

@@ -9,6 +9,8 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD", ROOT / "build")).resolve()
 MUSURF = str(BUILD / "musurf")
+# For the address sanitizer, where a library leaks at a cut file: whose leak it is shows only in whole call stacks.
+LEAKS = {"ASAN_OPTIONS": "fast_unwind_on_malloc=0", "LSAN_OPTIONS": f"print_suppressions=0:suppressions={ROOT / 'tests/lsan.supp'}"}
 
 
 def musurf(*arguments, stdin="", env=None, **options):

@@ -15,7 +15,7 @@ import zlib
 import numpy as np
 
 import exact_caster
-from command import musurf, strict
+from command import LEAKS, musurf, strict
 from test_surface_command import MAPS, VIEWS, maps, heightfield, masking, numbers, write_exr
 from test_surface_mesh import read_ply
 
@@ -71,7 +71,7 @@ class Files(unittest.TestCase):
         return whole[:-1, :-1]
 
     def refused(self, words, file, *options):
-        done = musurf("surface", "measure", file, "--view=1,0,1", *options)
+        done = musurf("surface", "measure", file, "--view=1,0,1", *options, env=LEAKS)
         with self.subTest(file=file, options=options):
             self.assertEqual((done.returncode, done.out), (2, ""))
             self.assertRegex(done.err, r"^musurf surface measure: [^\n]*\n$")

@@ -14,7 +14,7 @@ import unittest
 import numpy
 
 import exr
-from command import musurf
+from command import musurf, strict
 
 ROWS = 64
 
@@ -125,6 +125,19 @@ class Prefilter(unittest.TestCase):
         for name in "RGB":
             right = pooled(fine[name] * weight) / pooled(weight)
             self.assertLess(numpy.max(numpy.abs(first[name] - right)) / fine[name].max(), 0.0045)
+
+    def test_progress_for_programs(self):
+        """Every line is JSON: rising fractions, a warning of what was clamped, the end; then that it is there already. Without, text."""
+        fine = dict(sky(directions(64, 128)))
+        fine["R"][3, 5] = -1
+        lines = [strict(line) for line in self.make(fine, "--samples", 4096, "--threads", 1, "--progress=json").splitlines()]
+        events = [line["event"] for line in lines]
+        self.assertEqual((events[0], set(events[1:-1]), events[-1]), ("warning", {"progress"}, "done"))
+        fractions = [line["fraction"] for line in lines if line["event"] == "progress"]
+        self.assertTrue(fractions == sorted(fractions) and 0 < fractions[0] and fractions[-1] <= 1, fractions)
+        self.assertEqual((lines[-1]["file"], lines[-1]["samples"]), (str(self.out), 4096))
+        self.assertEqual([strict(line)["event"] for line in self.again("--samples", 4096, "--progress=json").splitlines()], ["kept"])
+        self.assertEqual(len(self.again("--samples", 16, "--progress=none").splitlines()), 2)
 
     def test_any_number_of_threads(self):
         fine = sky(directions(40, 80))

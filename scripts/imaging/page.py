@@ -63,6 +63,7 @@ def fragment(result, folder, curves, shown):
             f"<table><thead><tr><th>claim</th><th>found</th><th>verdict</th></tr></thead><tbody>{judged}</tbody></table>\n"
             + table(HEADS, rows(result["techniques"])) + "<p class=faint>*: the least FLIP among those that cost no more than the major axis with 16 reads.</p>\n"
             + "\n".join(figure(folder, name, caption) for name, caption in shown)
+            + ("<p>Whole scenes. The pot shades itself in the truth, and in no other picture.</p>" if scenes else "")
             + (table(["scene", "environment", "technique", "frame", "FLIP", "relative error", "FLIP of the truth’s halves"], scenes) if scenes else "")
             + drawing.figures(curves) + f"<p class=faint>{result['seconds']:.0f} s. <code>{html.escape(result['command'])}</code></p>\n")
 

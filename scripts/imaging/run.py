@@ -80,7 +80,7 @@ def main(arguments, build):
     parser = argparse.ArgumentParser("scripts/ibl", description="Compares the techniques of musurf render --integrator with path tracing, on the scenes of scenes/ibl: FLIP and relative "
                                      "error for N = 1 ... 64 reads against the time of a frame in the same run; maps over roughness and anisotropy; sweeps over k and β; judges what is "
                                      "claimed. Leaves ibl.json, fragment.html for scripts/report, curves/*.json, plots (PNG, SVG) and contact sheets. Path-traced pictures are kept "
-                                     "in truth/ under the hash of their settings: stopped and started again, a run makes none of them twice. Exit 0: measured, whatever it says; 1: a step "
+                                     "in truth/ under the hash of their settings: stopped and started again, a run makes none of them twice; delete them when the path tracer has changed. Exit 0: measured, whatever it says; 1: a step "
                                      "failed; 2: wrong usage; 130: interrupted.")
     parser.add_argument("--quick", action="store_true", help="four small spheres: to see that it works")
     parser.add_argument("-o", metavar="DIR", dest="output", default=str(build / "ibl"))

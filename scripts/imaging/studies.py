@@ -5,6 +5,7 @@
 A frame's time is in units of the bent normal's of the same round. Errors are means over a sphere; "below" and "above" are means over spheres of
 alpha_lin < 0.5 and > 0.5 and all environments.
 """
+import dataclasses
 import pathlib
 import statistics
 
@@ -13,6 +14,7 @@ import numpy as np
 from . import errors, program, scene, techniques
 
 HALF = 0.5
+MORE = 3  # times as many rounds of a whole scene as of the spheres, which are seen under several environments
 
 
 def costs(found, runs):
@@ -78,7 +80,7 @@ def whole(musurf, bench, truth, effort, folder, progress, best=None, env=None):
         halves, inside = truth.halves(given)
         progress.step(f"{name}: techniques", technique_weight(1, effort))
         found = [{"integrator": i, "label": techniques.label(i)} for i in techniques.contenders(musurf, best)]
-        run = program.by_techniques(bench, given, [entry["integrator"] for entry in found], effort, folder / "work", env)
+        run = program.by_techniques(bench, given, [entry["integrator"] for entry in found], dataclasses.replace(effort, rounds=MORE * effort.rounds), folder / "work", env)
         mean = (halves[0] + halves[1]) / 2
         costs(found, [run])
         for entry, made in zip(found, run):

@@ -35,7 +35,7 @@ TEST_PROGRAMS :=
 TESTS     :=
 -include core/bsdf/rules.mk plugin/rules.mk plugin/mitsuba/rules.mk plugin/blender/rules.mk core/render/rules.mk core/surface/rules.mk core/tension/rules.mk \
          core/ibl/rules.mk
--include tests/rules.mk scripts/rules.mk
+-include tests/rules.mk scripts/rules.mk scripts/page/rules.mk
 
 all: $(LIBRARIES) $(MODULES) $(PROGRAMS)
 
@@ -115,6 +115,7 @@ help:
 	@echo 'make mitsuba    Mitsuba 3 into $(BUILD)/mitsuba (some 400 MB); then make test-mitsuba: musurf inside it, in full'
 	@echo 'make blender-addon  an add-on for Blender as a zip, $(BUILD)/musurf_blender.zip'
 	@echo 'make blender    Blender, and a newer one from PyPI into $(BUILD)/bpy (some 900 MB); then make test-blender: musurf inside, in full'
+	@echo 'make page       one HTML page with the core inside, $(BUILD)/musurf.html: drag M, see D, lobe, axis and a lit sphere'
 	@echo 'make asan       the test suite under the address sanitizer; also: ubsan, tsan'
 	@echo 'make install    PREFIX=/usr/local DESTDIR= ; also: uninstall'
 	@echo 'make clean      remove what was built; distclean removes $(BUILD)/ with the virtual environment'

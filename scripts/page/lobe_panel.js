@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 The musurf authors
+// lobe_panel.js: one of the three panels of panel.h: the material's lobe as a picture, over it region, axis, samples; and its handles.
+import { svgElement } from "./handle.js";
+
+const curves = { boundary: [0, 97], whole: [1, 25], clamped: [2, 25] };
+const POINTS = 3, SAMPLED = 4, DISCS = 5, DISC = 32, SLOPES = 0, REFLECTED = 2;
+export const DISC_REACH = 1.1;
+
+// 1, 2 or 5 times a power of ten, at least x.
+function niceAbove(x) {
+    const power = 10 ** Math.floor(Math.log10(x));
+    return [1, 2, 5, 10].map((digit) => digit * power).find((nice) => nice >= x * (1 - 1e-12));
+}
+
+export class LobePanel {
+    constructor(core, space, canvas, svg, size) {
+        Object.assign(this, { core, space, canvas, svg, size });
+        canvas.width = canvas.height = size;
+        this.context = canvas.getContext("2d");
+        this.image = new ImageData(size, size);
+        this.work = core.malloc(4 * size * size);
+        this.pixels = core.malloc(4 * size * size);
+        this.points = core.malloc(16 * 64 * DISC);
+        svgElement("path", { class: "cross", d: "M-1 0H1M0 -1V1" }, svg);
+        if (space !== SLOPES) svgElement("circle", { class: "horizon", r: 1 / DISC_REACH }, svg);
+        this.discs = svgElement("path", { class: "discs" }, svg);
+        this.lines = Object.fromEntries(Object.keys(curves).map((name) => [name, svgElement("path", { class: name }, svg)]));
+        this.samples = svgElement("path", { class: "samples" }, svg);
+        this.dots = ["far", "far", "near", "near", "shifted", "shifted", "normal"].map((name) =>
+            svgElement("circle", { class: name, r: name === "shifted" ? 0.032 : 0.022 }, svg));
+        this.scale = svgElement("text", { x: 0.97, y: 0.94, "text-anchor": "end", class: "scale" }, svg);
+    }
+
+    pointsOf(curve, count) {
+        const found = this.core.page_curve_points(this.material, this.query, this.space, this.reach, curve, count, this.points);
+        const flat = new Float64Array(this.core.memory.buffer, this.points, 2 * found), points = [];
+        // what is far out, or at no place, is drawn far out
+        const held = (x) => (Math.abs(x) < 99 ? Math.round(x * 1e4) / 1e4 : x > 0 ? 99 : x < 0 ? -99 : 0);
+        for (let i = 0; i < found; i++) points.push([held(flat[2 * i]), held(-flat[2 * i + 1])]);
+        return points;
+    }
+
+    drawDensity(ink) {
+        const { core, size } = this;
+        this.largest = core.page_density(this.material, this.query, this.space, this.reach, size, ink, this.work, this.pixels);
+        this.image.data.set(new Uint8ClampedArray(core.memory.buffer, this.pixels, 4 * size * size));
+        this.context.putImageData(this.image, 0, 0);
+    }
+
+    show(material, query, sigma, k, ink) {
+        Object.assign(this, { material, query });
+        const widest = k * Math.max(...sigma);
+        this.reach = this.space === SLOPES ? niceAbove(Math.max(1.7 * widest, 1e-9)) : DISC_REACH;
+        this.drawDensity(ink);
+        for (const [name, [curve, count]] of Object.entries(curves))
+            this.lines[name].setAttribute("d", "M" + this.pointsOf(curve, count).map((p) => p.join(" ")).join("L"));
+        this.pointsOf(POINTS, 0).forEach(([x, y], i) => (this.dots[i].setAttribute("cx", x), this.dots[i].setAttribute("cy", y)));
+        this.samples.setAttribute("d", this.pointsOf(SAMPLED, 0).map((p) => `M${p.join(" ")}h0`).join(""));
+        if (this.space === REFLECTED) {
+            const points = this.pointsOf(DISCS, 0);
+            let path = "";
+            points.forEach((p, i) => (path += `${i % DISC ? "L" : (i ? "Z" : "") + "M"}${p.join(" ")}`));
+            this.discs.setAttribute("d", path + "Z");
+        }
+        this.scale.textContent = this.space === SLOPES ? `±${Number(this.reach.toPrecision(3))}` : "";
+    }
+}

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * sphere.c: a sphere of the material, seen from afar, row by row.
+ *
+ * World space: +z up; the viewer stands toward -y, sees x to the right and z upwards. The sphere's tangent points east, along its
+ * parallels, as that of the renderer's spheres: brushed around. Light comes from all around (surroundings.h), turned about
+ * +z, through the reads of core/ibl; or by random directions of the material's own sampler, whose mean is the truth; or from one
+ * parallel lamp, by the exact BRDF.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/ibl/reads.h"
+#include "scripts/page/albedo.h"
+#include "scripts/page/numbers.h"
+#include "scripts/page/surroundings.h"
+#include "scripts/page/tone.h"
+
+#define RADIUS 0.88f /* of half the picture */
+
+/* The numbers of a view of it. */
+enum { SIZE, TECHNIQUE, TURN, EXPOSURE, LAMP_X, LAMP_Y, LAMP_Z, NUMBERS };
+/* After those of core/ibl. */
+enum { SAMPLED = MU_IBL_MAJOR_AXIS + 1, LAMP };
+
+struct page_sphere {
+    const page_material *material;
+    const page_surroundings *around;
+    page_albedo albedo;
+    mu_ibl_settings_f settings;
+    int size, technique;
+    float turn[2], exposure, lamp[3];
+    page_tone tone;
+};
+
+/* A point of the sphere: normal, east, north; and toward the viewer in that frame. */
+typedef struct spot {
+    float n[3], t[3], b[3], wo[3];
+} spot;
+
+const char *page_technique_name(int technique) {
+    static const char *const names[] = {"split integral", "bent normal", "major axis",
+                                        "sampled",        "lamp",        NULL};
+    return names[technique];
+}
+
+page_sphere *page_sphere_new(void) {
+    page_sphere *s = calloc(1, sizeof *s);
+    if (s) page_tone_make(&s->tone);
+    return s;
+}
+
+void page_sphere_set(page_sphere *s, const page_material *material, const page_surroundings *around,
+                     const double *query, const double *numbers, int samples) {
+    const mu_ibl_settings_d settings = page_settings(query);
+    s->material = material, s->around = around;
+    s->settings = (mu_ibl_settings_f){
+        (float)settings.k, (float)settings.beta,
+        settings.samples < MU_IBL_READS_MOST ? settings.samples : MU_IBL_READS_MOST, settings.shift};
+    s->size = (int)numbers[SIZE], s->technique = (int)numbers[TECHNIQUE];
+    s->turn[0] = (float)cos(numbers[TURN]), s->turn[1] = (float)sin(numbers[TURN]);
+    s->exposure = (float)numbers[EXPOSURE];
+    for (int k = 0; k < 3; k++) s->lamp[k] = (float)numbers[LAMP_X + k];
+    if (samples) page_albedo_make(&s->albedo, material, samples);
+}
+
+/* Into the frame of the surroundings, which were turned. */
+static inline void turn_back(const page_sphere *s, const float w[3], float out[3]) {
+    out[0] = s->turn[0] * w[0] + s->turn[1] * w[1];
+    out[1] = s->turn[0] * w[1] - s->turn[1] * w[0];
+    out[2] = w[2];
+}
+
+static inline void to_world(const spot *p, const float w[3], float out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = w[0] * p->t[k] + w[1] * p->b[k] + w[2] * p->n[k];
+}
+
+/* At x, y of the unit disc, and at -x, -y. */
+static inline void spots_at(float x, float y, spot both[2]) {
+    const float square = x * x + y * y;
+    if (square > 0.9999f) x *= 0.99995f / sqrtf(square), y *= 0.99995f / sqrtf(square);
+    const float front = sqrtf(1 - x * x - y * y), flat = sqrtf(x * x + front * front), inverse = 1 / flat;
+    const float cosine = front * inverse, sine = x * inverse;
+    both[0] =
+        (spot){{x, -front, y}, {cosine, sine, 0}, {-y * sine, y * cosine, flat}, {-sine, -y * cosine, front}};
+    both[1] = (spot){
+        {-x, -front, -y}, {cosine, -sine, 0}, {-y * sine, -y * cosine, flat}, {sine, y * cosine, front}};
+}
+
+/* Directions in the frame of `p`, times `turned` along the surface: +1, or -1 for the opposite spot. */
+static void look(const page_sphere *s, const spot *p, size_t count, const mu_ibl_read *reads, float turned,
+                 const float albedo[4], float rgb[4]) {
+    mu_ibl_batch batch;
+    float x[3], y[3], z[3]; /* the frame's axes there */
+    const float last = (float)(s->around->globe.levels - 1);
+    batch.count = count;
+    turn_back(s, p->t, x), turn_back(s, p->b, y), turn_back(s, p->n, z);
+    for (size_t k = 0; k < count; k++) {
+        const float dx = turned * reads[k].direction[0], dy = turned * reads[k].direction[1],
+                    dz = reads[k].direction[2];
+        batch.x[k] = dx * x[0] + dy * y[0] + dz * z[0];
+        batch.y[k] = dx * x[1] + dy * y[1] + dz * z[1];
+        batch.z[k] = dx * x[2] + dy * y[2] + dz * z[2];
+        batch.level[k] = reads[k].roughness * last, batch.weight[k] = reads[k].weight;
+    }
+    mu_ibl_globe_sum(&s->around->globe, &batch, rgb);
+    for (int k = 0; k < 4; k++) rgb[k] *= albedo[k];
+}
+
+/* Two opposite spots: seen in their frames the view is turned by half about the normal, and so are, of a lobe that half a turn leaves
+ * as it is, the reads. */
+static void by_reads(const page_sphere *s, const spot *p, const spot *opposite, float rgb[2][4]) {
+    mu_ibl_read reads[MU_IBL_READS_MOST];
+    float albedo[4];
+    const size_t count =
+        mu_ibl_reads((mu_ibl_technique)s->technique, &s->material->lobe, p->wo, &s->settings, reads);
+    page_albedo_at(&s->albedo, &s->material->lobe, p->wo, albedo);
+    look(s, p, count, reads, 1, albedo, rgb[0]);
+    look(s, opposite, count, reads, -1, albedo, rgb[1]);
+}
+
+static void by_lamp(const page_sphere *s, const spot *p, float rgb[4]) {
+    mu_closure_f c;
+    mu_value_f value;
+    float wi[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        wi[0] += s->lamp[k] * p->t[k], wi[1] += s->lamp[k] * p->b[k], wi[2] += s->lamp[k] * p->n[k];
+    if (!(wi[2] > 0) || !mu_bind_f(s->material->shaded, p->wo, NULL, &c)) return;
+    mu_eval_f(&c, wi, &value);
+    for (int k = 0; k < 3; k++) rgb[k] = 3.14159265f * value.f[k] * wi[2];
+}
+
+/* Uniform in [0, 1), of pixel and pass: the lattice of albedo.c, shifted by a hash (Wellons' lowbias32). */
+static void numbers_of(uint32_t pixel, uint32_t pass, float u[3]) {
+    static const double step[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t h = pixel * 3 + k;
+        h = (h ^ h >> 16) * 0x7feb352du, h = (h ^ h >> 15) * 0x846ca68bu, h ^= h >> 16;
+        const double place = h * 0x1p-32 + (pass + 1.0) * step[k];
+        u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
+    }
+}
+
+static void by_sampling(const page_sphere *s, const spot *p, uint32_t pixel, uint32_t pass, float rgb[4]) {
+    mu_closure_f c;
+    mu_sample_f sample;
+    float u[3], world[3], w[3];
+    if (!mu_bind_f(s->material->shaded, p->wo, NULL, &c)) return;
+    numbers_of(pixel, pass, u);
+    mu_sample_wi_f(&c, u, &sample);
+    if (sample.rejected) return;
+    to_world(p, sample.wi, world);
+    turn_back(s, world, w);
+    mu_ibl_globe_add(&s->around->globe, w, 0, 1, rgb);
+    for (int k = 0; k < 3; k++) rgb[k] *= sample.weight[k];
+}
+
+static void shade(const page_sphere *s, const spot *both, const uint32_t pixel[2], int pass, int sampled,
+                  float rgb[2][4]) {
+    if (s->technique < SAMPLED || (s->technique == SAMPLED && !sampled)) {
+        by_reads(s, &both[0], &both[1], rgb);
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+        if (s->technique == LAMP)
+            by_lamp(s, &both[i], rgb[i]);
+        else
+            by_sampling(s, &both[i], pixel[i], (uint32_t)pass, rgb[i]);
+}
+
+void page_sphere_rows(const page_sphere *s, int row, int pass, float *sums, float *linear, uint32_t *rgba) {
+    const float half = (float)s->size / 2, y = (half - ((float)row + 0.5f)) / half;
+    for (int column = 0; column < s->size; column++) {
+        const float x = (((float)column + 0.5f) - half) / half,
+                    inside = half * (RADIUS - sqrtf(x * x + y * y));
+        const float cover = fminf(fmaxf(inside + 0.5f, 0), 1); /* of the pixel by the sphere */
+        float front[2][4] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
+        const int place[2] = {column, 2 * s->size - 1 - column}; /* in both rows */
+        if (cover > 0) {
+            spot both[2];
+            spots_at(x / RADIUS, y / RADIUS, both);
+            const uint32_t pixel[2] = {(uint32_t)(row * s->size + column),
+                                       (uint32_t)((s->size - row) * s->size - 1 - column)};
+            shade(s, both, pixel, pass, sums != NULL, front);
+        }
+        for (int i = 0; i < 2; i++) {
+            if (s->technique == SAMPLED && sums)
+                for (int k = 0; k < 3; k++)
+                    front[i][k] = (sums[3 * place[i] + k] += front[i][k]) / (float)(pass + 1);
+            if (linear)
+                memcpy(linear + 3 * place[i], front[i], 3 * sizeof(float));
+            else
+                rgba[place[i]] = page_tone_of(&s->tone, s->exposure, front[i], cover);
+        }
+    }
+}
+
+void page_backdrop(const page_sphere *s, int size, uint32_t *rgba) {
+    const float last = (float)(s->around->globe.levels - 1), bright = s->technique == LAMP ? 0 : 1;
+    for (int i = 0; i < size * size; i++) {
+        const float x = (2 * (float)(i % size) + 1) / (float)size - 1,
+                    z = 1 - (2 * (float)(i / size) + 1) / (float)size;
+        const float world[3] = {x, 1.6f, z};
+        float w[3], rgb[4] = {0, 0, 0, 0};
+        turn_back(s, world, w);
+        mu_ibl_globe_add(&s->around->globe, w, 0.4f * last, bright, rgb);
+        rgba[i] = page_tone_of(&s->tone, s->exposure, rgb, 1);
+    }
+}

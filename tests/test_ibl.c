@@ -147,7 +147,7 @@ typedef struct question {
 static question any_question(uniform *u) {
     const double a = pow(0.05 + 0.95 * uniform_double(u), 2), e = 1.8 * uniform_double(u) - 0.9,
                  angle = 7 * uniform_double(u);
-    question q = {{{a * (1 + e), a * (1 - e)}, {cos(angle), sin(angle)}}, {0, 0, 0}};
+    question q = {{{a * (1 + e), a * (1 - e)}, {cos(angle), sin(angle)}, {0, 0}}, {0, 0, 0}};
     bsdf_direction(uniform_double(u), 7 * uniform_double(u), q.wo);
     return q;
 }
@@ -196,7 +196,7 @@ static void test_float(void **state) {
         q.lobe.sigma[1] = q.lobe.sigma[0] / (3 + 3 * uniform_double(&u));
         bsdf_direction(0.7 + 0.3 * uniform_double(&u), 7 * uniform_double(&u), q.wo);
         const mu_ibl_lobe_f lobe = {{(float)q.lobe.sigma[0], (float)q.lobe.sigma[1]},
-                                    {(float)q.lobe.turn[0], (float)q.lobe.turn[1]}};
+                                    {(float)q.lobe.turn[0], (float)q.lobe.turn[1]}, {0, 0}};
         const float wo[3] = {(float)q.wo[0], (float)q.wo[1], (float)q.wo[2]};
         mu_ibl_axis_d a;
         mu_ibl_axis_f f;

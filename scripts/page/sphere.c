@@ -23,13 +23,13 @@
 /* The numbers of a view of it. */
 enum { SIZE, TECHNIQUE, TURN, EXPOSURE, LAMP_X, LAMP_Y, LAMP_Z, NUMBERS };
 /* After those of core/ibl. */
-enum { SAMPLED = MU_IBL_MAJOR_AXIS + 1, LAMP };
+enum { SAMPLED = MU_IBL_LOBE + 1, LAMP };
 
 struct page_sphere {
     const page_material *material;
     const page_surroundings *around;
     page_albedo albedo;
-    mu_ibl_settings_f settings;
+    mu_ibl_plan plan;
     int size, technique;
     float turn[2], exposure, lamp[3];
     page_tone tone;
@@ -56,10 +56,13 @@ void page_sphere_set(page_sphere *s, const page_material *material, const page_s
                      const double *query, const double *numbers, int samples) {
     const mu_ibl_settings_d settings = page_settings(query);
     s->material = material, s->around = around;
-    s->settings = (mu_ibl_settings_f){
+    s->size = (int)numbers[SIZE], s->technique = (int)numbers[TECHNIQUE];
+    const mu_ibl_settings_f in_float = {
         (float)settings.k, (float)settings.beta,
         settings.samples < MU_IBL_READS_MOST ? settings.samples : MU_IBL_READS_MOST, settings.shift};
-    s->size = (int)numbers[SIZE], s->technique = (int)numbers[TECHNIQUE];
+    /* until there are samples, and without light around: the major axis */
+    mu_ibl_plan_make(s->technique < SAMPLED ? (mu_ibl_technique)s->technique : MU_IBL_MAJOR_AXIS, &in_float,
+                     &s->plan);
     s->turn[0] = (float)cos(numbers[TURN]), s->turn[1] = (float)sin(numbers[TURN]);
     s->exposure = (float)numbers[EXPOSURE];
     for (int k = 0; k < 3; k++) s->lamp[k] = (float)numbers[LAMP_X + k];
@@ -114,8 +117,7 @@ static void look(const page_sphere *s, const spot *p, size_t count, const mu_ibl
 static void by_reads(const page_sphere *s, const spot *p, const spot *opposite, float rgb[2][4]) {
     mu_ibl_read reads[MU_IBL_READS_MOST];
     float albedo[4];
-    const size_t count =
-        mu_ibl_reads((mu_ibl_technique)s->technique, &s->material->lobe, p->wo, &s->settings, reads);
+    const size_t count = mu_ibl_reads(&s->plan, &s->material->lobe, p->wo, reads);
     page_albedo_at(&s->albedo, &s->material->lobe, p->wo, albedo);
     look(s, p, count, reads, 1, albedo, rgb[0]);
     look(s, opposite, count, reads, -1, albedo, rgb[1]);

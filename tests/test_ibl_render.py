@@ -14,7 +14,7 @@ import exr
 from command import answers, microfacet, musurf
 from picture_flip import flip
 
-TECHNIQUES = ("split", "bent-normal", "major-axis", "lobe")
+TECHNIQUES = ("split", "bent-normal", "major-axis", "lobe", "filtered")
 STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
 
 

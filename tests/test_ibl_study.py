@@ -38,7 +38,8 @@ class Study(unittest.TestCase):
             self.assertRegex(done.stderr, r"ibl: +\d+ %  truth under \w+: sphere 3 of 4; \d+ s, \d+ s to go")
             folder = pathlib.Path(folder)
             told = json.loads((folder / "ibl.json").read_text())
-            self.assertEqual((folder / "fragment.html").read_text().count("<img "), 3 + bool(told["sweeps"]) + 4)
+            self.assertEqual((folder / "fragment.html").read_text().count("<img "), 3 + 1 + 4)
+            self.assertEqual(sorted(told["sweeps"]), ["beta", "k"])
             self.assertTrue(all((folder / name).exists() for name in ("maps.png", "maps.svg", "figure21.png")))
         names = [name for name in json.loads(musurf("info", "--json").out)["integrators"] if name != "path"]
         self.assertEqual(list(dict.fromkeys(t["integrator"]["by"] for t in told["techniques"])), names)
@@ -54,6 +55,8 @@ class Study(unittest.TestCase):
         one, many = (verdicts.of(told["techniques"], by="major-axis", reads=n)["flip_means"]["below"] for n in (1, 64))
         self.assertGreater(one, many + told["noise_means"]["flip"]["below"])
         self.assertGreater(many, told["noise_means"]["flip"]["below"])
+        few, all_over = (verdicts.of(told["techniques"], by="filtered", reads=n)["flip_means"]["above"] for n in (4, 64))  # integrates the lobe, in the end
+        self.assertGreater(few, all_over + told["noise_means"]["flip"]["above"])
         judged = {c["name"]: c["holds"] for c in told["claims"]}
         self.assertEqual(judged["seed"], axis["flip_means"]["below"] < bent["flip_means"]["below"])
 

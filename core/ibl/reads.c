@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* reads.c: see reads.h. In float; compiled once. */
+#include "core/ibl/importance.h"
 #include "core/ibl/spread.h"
 
 #include "core/bsdf/real.h"
@@ -72,6 +73,8 @@ size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const fl
         return major_axis(lobe, wo, &plan->settings, out);
     case MU_IBL_LOBE:
         return mu_ibl_spread_reads(&plan->spread, plan->settings.samples, lobe, wo, out);
+    case MU_IBL_FILTERED:
+        return mu_ibl_importance_reads(&plan->spread, plan->settings.samples, lobe, wo, out);
     default:
         return split(lobe, wo, out);
     }

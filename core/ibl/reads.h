@@ -25,10 +25,17 @@ typedef struct mu_ibl_read {
  * MU_IBL_BENT_NORMAL: Revie 2011 as Lagarde and Golubev 2018 have it: one read, mirrored at a normal that is bent across the
  *     grain, and sharper than h1.
  * MU_IBL_MAJOR_AXIS: N reads along the axis, all alike, Eq. (5).
- * MU_IBL_LOBE: N reads all over the lobe, each as wide as the lobe is across where it stands (spread.h). */
-typedef enum mu_ibl_technique { MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE } mu_ibl_technique;
+ * MU_IBL_LOBE: N reads all over the lobe, each as wide as the lobe is across where it stands (spread.h).
+ * MU_IBL_FILTERED: n x n reads, the largest square up to N, by filtered importance sampling (importance.h). */
+typedef enum mu_ibl_technique {
+    MU_IBL_SPLIT,
+    MU_IBL_BENT_NORMAL,
+    MU_IBL_MAJOR_AXIS,
+    MU_IBL_LOBE,
+    MU_IBL_FILTERED
+} mu_ibl_technique;
 
-/* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c). */
+/* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c); of MU_IBL_FILTERED (importance.c). */
 typedef struct mu_ibl_spread {
     float along[MU_IBL_READS_MOST], across[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
     float step; /* between neighbours, in asinh of `along` */
@@ -38,7 +45,7 @@ typedef struct mu_ibl_spread {
 typedef struct mu_ibl_plan {
     mu_ibl_technique technique;
     mu_ibl_settings_f settings;
-    mu_ibl_spread spread; /* of MU_IBL_LOBE */
+    mu_ibl_spread spread; /* of those that have one */
 } mu_ibl_plan;
 
 /* samples from 1 to MU_IBL_READS_MOST. */

@@ -20,6 +20,8 @@
  */
 #include "core/ibl/spread.h"
 
+#include "core/ibl/importance.h"
+
 #include "core/bsdf/real.h"
 
 #if MU_REAL_BITS == 24
@@ -91,7 +93,10 @@ size_t mu_ibl_spread_reads(const mu_ibl_spread *spread, size_t count, const mu_i
 
 void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan) {
     plan->technique = technique, plan->settings = *settings;
-    mu_ibl_spread_make(settings->samples, &plan->spread);
+    if (technique == MU_IBL_FILTERED)
+        plan->settings.samples = mu_ibl_importance_make(settings->samples, &plan->spread);
+    else
+        mu_ibl_spread_make(settings->samples, &plan->spread);
 }
 
 #endif

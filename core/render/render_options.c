@@ -17,8 +17,8 @@ enum { OUTPUT, INTEGRATOR, READS, SPP, TIME, NOISE, THREADS, SEED, SIZE, FRAME, 
 
 static const mu_option option_list[] = {
     {"o", "OUT.exr", "the image, written when it is complete and whole"},
-    {"integrator", "path|split|bent-normal|major-axis|lobe", "how light is found (default: the scene's, or path)"},
-    {"reads", "N", "of the filtered environment, of major-axis and lobe, 1 to 64 (default: the scene's, or 16)"},
+    {"integrator", "path|split|bent-normal|major-axis|lobe|filtered", "how light is found (default: the scene's, or path)"},
+    {"reads", "N", "of the filtered environment, of major-axis, lobe and filtered, 1 to 64 (default: the scene's, or 16)"},
     {"spp", "N", "samples per pixel (default: the scene's)"},
     {"time", "S", "stop before S seconds have passed; at least one sample per pixel is taken"},
     {"noise", "E", "stop when the mean relative standard error of the pixels is E or less"},
@@ -46,7 +46,8 @@ const mu_usage mu_render_usage = {
     "\n"
     "--integrator other than path lights microsurfaces that reflect by reads of the light around the scene, filtered in\n"
     "advance for every roughness: one read along the mirrored view (split), one at a bent normal, --reads along the\n"
-    "major axis of the lobe, or --reads all over it (lobe: the best of them). There are no shadows, and light is reflected once.\n"
+    "major axis of the lobe, or --reads all over it (lobe: the best of them; filtered: by\n"
+    "importance sampling, to compare). There are no shadows, and light is reflected once.\n"
     "\n"
     "--explain prints one JSON object: \"features\" that the scene needs, \"left_out\" (each other feature "
     "and "

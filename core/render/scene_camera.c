@@ -77,11 +77,11 @@ _Bool mu_read_film(mu_reader *reader) {
     return !place.value || mu_read_float(&place, "radius", 1e-3, 64, &film->filter_radius, error);
 }
 
-const char *const mu_integrators[] = {"path", "split", "bent-normal", "major-axis", "lobe", NULL};
+const char *const mu_integrators[] = {"path", "split", "bent-normal", "major-axis", "lobe", "filtered", NULL};
 static const char *const shifts[] = {"symmetric", "printed", NULL};
 
 void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
-    static const mu_ibl_technique techniques[] = {MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE};
+    static const mu_ibl_technique techniques[] = {MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE, MU_IBL_FILTERED};
     integrator->by_image = index > 0;
     if (index) integrator->technique = techniques[index - 1];
 }

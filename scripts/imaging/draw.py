@@ -38,7 +38,7 @@ def save(plt, figure, path):
 def shown(found):
     """Bent normal, the paper's form, and the best other one; or all others with the paper's N where none is as cheap."""
     best = verdicts.improved(found)
-    others = [best] if best else [e for e in found if e["integrator"].get("reads") == efforts.SEED and e["integrator"]["by"] != techniques.SEED]
+    others = [best] if best else [e for e in found if e["integrator"].get("reads") == efforts.SEED and e["integrator"]["by"] not in techniques.PUBLISHED]
     return [verdicts.of(found, by=techniques.BASELINE), verdicts.of(found, by=techniques.SEED, reads=efforts.SEED), *others]
 
 

@@ -48,7 +48,7 @@ def pictures(folder, grid, environments, noise, found, swept, made, whole):
         sheets.pictures.save(sheets.compared(whole[name], name, entries), folder / f"{name}.png")
         listed.append((f"{name}.png", f"{name}: the truth and the techniques, below them FLIP (black: none)."))
     cell = sheets.one(grid, made, environments[0], sheets.figure_21(found), 0.4, -0.8, folder / "figure21.png", max(1, 192 // grid.side))
-    listed.append(("figure21.png", f"Figure 21: a sphere of α_lin {cell.roughness:g}, η {cell.anisotropy:g} under {environments[0]}, {efforts.FILTERED} reads of what is not the major axis."))
+    listed.append(("figure21.png", f"Figure 21: a sphere of α_lin {cell.roughness:g}, η {cell.anisotropy:g} under {environments[0]}, also by filtered importance sampling with {efforts.FILTERED} reads."))
     listed += [(file, f"Spheres under {file[8:-4]}, α_lin from top to bottom, η from left to right; below, FLIP.") for file in sheets.spheres(made, environments, chosen, folder)]
     return listed
 

@@ -7,7 +7,8 @@ from . import effort as efforts
 from . import program, scene
 
 ONE_READ = ("split", "bent-normal")
-BASELINE, SEED = "bent-normal", "major-axis"
+BASELINE, SEED, FILTERED = "bent-normal", "major-axis", "filtered"
+PUBLISHED = (*ONE_READ, SEED, FILTERED)  # every other technique is an improvement, or is to be one
 
 
 def names(musurf):

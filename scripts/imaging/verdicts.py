@@ -3,7 +3,7 @@
 """What the paper claims and what was asked for, each with the numbers of this run and whether they bear it out.
 
 Thresholds: the seed's form (major-axis, N = 16) takes at most 2.5 times the bent normal's frame; its mean FLIP is below the bent normal's for
-alpha_lin < 0.5; a technique beyond the three of the paper has at most half the seed form's there at no higher cost, and is below the bent normal
+alpha_lin < 0.5; a technique beyond the published ones has at most half the seed form's there at no higher cost, and is below the bent normal
 above 0.5, too. Of such techniques the one with the least mean FLIP below 0.5 among those that cost no more is taken.
 """
 from . import effort as efforts
@@ -19,7 +19,7 @@ def of(found, **integrator):
 def improved(found):
     """The best that costs no more than the seed's form, of other techniques; None if there is none."""
     seed = of(found, by=techniques.SEED, reads=efforts.SEED)
-    others = [e for e in found if e["integrator"]["by"] not in (*techniques.ONE_READ, techniques.SEED) and e["frame"] <= seed["frame"]]
+    others = [e for e in found if e["integrator"]["by"] not in techniques.PUBLISHED and e["frame"] <= seed["frame"]]
     return min(others, key=lambda e: e["flip_means"]["below"], default=None)
 
 

@@ -39,8 +39,12 @@ static inline visible visible_of(const mu_ibl_lobe_f *l, const float wo[3]) {
     for (int k = 0; k < 3; k++) f.wo[k] = wo[k];
     for (int k = 0; k < 2; k++) f.w[k] = f.s[k][0] * wo[0] + f.s[k][1] * wo[1];
     f.w[2] = wo[2] - f.mean[0] * wo[0] - f.mean[1] * wo[1];
-    f.length = larger(sqrt(dot(f.w, f.w)), REAL_MIN);
-    for (int k = 0; k < 3; k++) f.w[k] /= f.length;
+    /* its largest part first made 1: of a view along the horizon squares may be 0 in float */
+    const float part = larger(larger(fabs(f.w[0]), fabs(f.w[1])), fabs(f.w[2]));
+    for (int k = 0; k < 3; k++) f.w[k] = part > 0 ? f.w[k] / part : (float)(k == 2);
+    const float length = sqrt(dot(f.w, f.w));
+    for (int k = 0; k < 3; k++) f.w[k] /= length;
+    f.length = length * part;
     const float flat = sqrt(f.w[0] * f.w[0] + f.w[1] * f.w[1]);
     f.x[0] = flat > 0 ? -f.w[1] / flat : 1, f.x[1] = flat > 0 ? f.w[0] / flat : 0, f.x[2] = 0;
     f.y[0] = -f.w[2] * f.x[1], f.y[1] = f.w[2] * f.x[0], f.y[2] = flat; /* w x (x, y, 0) */

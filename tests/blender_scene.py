@@ -83,7 +83,7 @@ def surround(scene, folder):
 
 
 def lights(scene, wanted, folder):
-    """Of area, sun and world. In Cycles lamps block no light, and what is behind them shines through: ours are solid."""
+    """Of area, sun, point, spot and world. In Cycles lamps block no light, and what is behind them shines through: ours are solid."""
     area = bpy.data.lights.new("lamp", "AREA")
     area.shape, area.size, area.size_y, area.energy, area.color = "RECTANGLE", 1.5, 1.0, 90, (1, 0.9, 0.8)
     lamp = bpy.data.objects.new("lamp", area)
@@ -95,6 +95,14 @@ def lights(scene, wanted, folder):
     for kind, thing in (("area", lamp), ("sun", far)):
         if kind in wanted:
             scene.collection.objects.link(thing)
+    for kind in {"point", "spot"} & set(wanted):
+        data = bpy.data.lights.new(kind, kind.upper())
+        data.energy, data.color, data.shadow_soft_size = 150, (0.8, 1, 0.9), 0
+        if kind == "spot":
+            data.spot_size, data.spot_blend = math.radians(50), 0.6
+        thing = bpy.data.objects.new(kind, data)
+        thing.location, thing.rotation_euler = (-0.8, -0.4, 2.2), (math.radians(10), math.radians(-15), 0)
+        scene.collection.objects.link(thing)
     if "picture" in wanted:
         return surround(scene, folder)
     if "world" not in wanted:

@@ -58,9 +58,10 @@ def refused(scene, floor, sign):
 
 
 def strange_lights(scene, floor, sign):
-    for kind in ("POINT", "SPOT"):
-        thing = bpy.data.objects.new(kind.lower(), bpy.data.lights.new(kind.lower(), kind))
+    for name, kind in (("point", "POINT"), ("spot", "SPOT"), ("disk", "AREA")):
+        thing = bpy.data.objects.new(name, bpy.data.lights.new(name, kind))
         scene.collection.objects.link(thing)
+    thing.data.shape = "DISK"
     scene.camera.data.dof.use_dof, scene.camera.data.shift_x = True, 0.2
 
 

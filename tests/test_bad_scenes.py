@@ -64,6 +64,8 @@ CASES = [
     ('{"scale": 1}', '{"scael": 1}', '"scael"', "$.objects[0].transform[1].scael", ["scale"]),
     ("[0,0,1,3]]", "[0,0,1,3],[0,0,1,1]]", "[0,0,1,1]", "$.lights[2].transform[3]", ["[0, 0, 0, 1]"]),
     ('"direction": [0, 0, 1]', '"direction": [0, 0, 0]', '[0, 0, 0], "irr', "$.lights[1].direction", ["zero"]),
+    ('"lights": [', '"lights": [\n  {"type": "point", "angle": 400},', '400', "$.lights[0].angle", ["360"]),
+    ('"lights": [', '"lights": [\n  {"type": "point", "direction": [0.0, 0, 0]},', '[0.0, 0, 0]},', "$.lights[0].direction", ["zero"]),
     ('"irradiance": [1, 2, 3]', '"irradiance": [1, -2, 3]', "-2", "$.lights[1].irradiance[1]", ["0"]),
     ('"lights": [', '"lights": [\n  {"type": "studio"},', '{"type": "constant"', "$.lights[1]", ["at most one"]),
     ('"transform": [[5, 0], [0, 1]]', '"transform": [[5, 0], [5, 0]]', '[[5, 0], [5, 0]]', "$.materials.metal.transform",

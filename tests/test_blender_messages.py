@@ -21,7 +21,7 @@ CASES = {
     "missing_image": "/there/is/none.png",
     "painted_image": 'material "floor": alpha: the image "painted" has no file: save it or pack it',
     "refused": "alpha",
-    "strange_lights": 'the light "spot" is of type spot: only suns and square or rectangular areas are known here; it is left out',
+    "strange_lights": 'the light "disk" is of type area, disk: only suns, points, spots, and square or rectangular areas are known here; it is left out',
     "foreign_material": 'material "floor" is none of musurf\'s: it is matt, of its viewport color',
     "unknown_type": 'material "floor": acme.velvet is not known to the plugins there are',
     "no_camera": "no camera",  # Blender itself says so
@@ -47,7 +47,8 @@ class Messages(blender_host.Installed):
                     self.assertIsNotNone(said, log)
                     self.assertIn(wanted, said)
                     self.assertEqual("raised:" in said, name in FATAL, said)
-            self.assertIn("point", part(log, "strange_lights"))
+            for name in ("point", "spot"):
+                self.assertRegex(part(log, "strange_lights"), rf'the light "{name}" is a ball of radius 0\.\d+; it is a point here, and its shadows are sharp')
             self.assertIn("depth of field", part(log, "strange_lights"))
             self.assertIn("is shifted", part(log, "strange_lights"))
             for name in ("of_its_own_faces", "stopped"):

@@ -59,6 +59,7 @@ NEEDS = {
     "filtered_light": {"integrator": {"samples": 1, "depth": 2, "roulette": 2, "by": "split"},
                        "objects": [{"shape": "sphere", "material": METAL}]},
     "directional_lights": {"lights": [{"type": "directional"}]},
+    "point_lights": {"lights": [{"type": "point", "position": [0, 0, 3]}]},
     "rectangle_lights": {"lights": [{"type": "rectangle"}]},
     "glossy_reflection": with_material(),
     "delta_reflection": with_material(alpha=0),

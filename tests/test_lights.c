@@ -171,10 +171,40 @@ static void test_rectangle_irradiance(void **state) {
     }
 }
 
+/* Intensity over squared distance; in the soft edge of a cone 3 t² - 2 t³ of it, nothing outside. */
+static void test_point_lights(void **state) {
+    (void)state;
+    const double degree = 3.14159265358979323846 / 180, edge = cos(30 * degree), soft = 0.5 * (1 - edge);
+    const mu_light all[2] = {{.kind = MU_POINT, .position = {1, -2, 3}, .irradiance = {8, 4, 2}, .cone = {-1, 0}},
+                             {.kind = MU_POINT,
+                              .position = {1, -2, 3},
+                              .irradiance = {8, 4, 2},
+                              .direction = {0, 0, -1},
+                              .cone = {(float)edge, (float)soft}}};
+    for (int angle = 0; angle < 180; angle++) {
+        const double distance = 0.5 + angle * 0.02, c = cos((angle + 0.5) * degree), s = sin((angle + 0.5) * degree);
+        const double t = fmin(fmax((c - edge) / soft, 0), 1), within[2] = {1, t * t * (3 - 2 * t)};
+        const mu_vec3 p = mu_v3((float)(1 + distance * s), -2, (float)(3 - distance * c));
+        for (int k = 0; k < 2; k++) {
+            mu_light_sample sample = {.direction = {0, 0, 1}, .distance = INFINITY};
+            mu_point_light_sample(&all[k], p, &sample);
+            assert_true((sample.pdf > 0) == (within[k] > 0));
+            if (!(within[k] > 0)) continue;
+            assert_true(sample.delta && sample.pdf == 1);
+            assert_near((double)sample.distance, distance, 1e-5 * distance);
+            /* a few roundings of p and of the cosine, which the cubic's slope, 1.5 at most, divides by its width */
+            assert_near((double)sample.radiance[1], 4 * within[k] / (distance * distance), (1e-5 + 1e-5 / soft) / (distance * distance));
+        }
+    }
+    mu_light_sample none = {.pdf = 0};
+    mu_point_light_sample(&all[0], all[0].position, &none);
+    assert_true(none.pdf == 0);
+}
+
 /* Several lights at once: whichever is drawn, the mean is the sum of all. */
 static void test_choice_of_light_is_accounted_for(void **state) {
     (void)state;
-    mu_light all[4] = {{.kind = MU_RECTANGLE_LIGHT,
+    mu_light all[5] = {{.kind = MU_RECTANGLE_LIGHT,
                         .size = {1, 1},
                         .scale = {3, 3, 3},
                         .to_world = {{{1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 2}}}},
@@ -183,18 +213,19 @@ static void test_choice_of_light_is_accounted_for(void **state) {
                        {.kind = MU_RECTANGLE_LIGHT,
                         .size = {4, 1},
                         .scale = {0.5f, 0.5f, 0.5f},
-                        .to_world = {{{1, 0, 0, 3}, {0, -1, 0, 1}, {0, 0, -1, 5}}}}};
-    mu_scene scene = {.lights = all, .light_count = 4};
+                        .to_world = {{{1, 0, 0, 3}, {0, -1, 0, 1}, {0, 0, -1, 5}}}},
+                       {.kind = MU_POINT, .position = {0.2f, 0.1f, 2}, .irradiance = {6, 6, 6}, .cone = {-1, 0}}};
+    mu_scene scene = {.lights = all, .light_count = 5};
     mu_error error = {.text = ""};
     mu_lights *lights = mu_lights_build(&scene, &error);
     assert_non_null(lights);
-    assert_int_equal(mu_lights_choices(lights), 3);
+    assert_int_equal(mu_lights_choices(lights), 4);
     mu_rectangle_light first, second;
     mu_rectangle_light_make(&first, &all[0]);
     mu_rectangle_light_make(&second, &all[3]);
     const mu_vec3 p = {0.2f, 0.1f, 0}, n = {0, 0, 1};
     const double truth =
-        3 * polygon_irradiance(&first, p, n) + 0.5 * polygon_irradiance(&second, p, n) + 2 * 0.8;
+        3 * polygon_irradiance(&first, p, n) + 0.5 * polygon_irradiance(&second, p, n) + 2 * 0.8 + 6 / 4.0;
     uniform random = {11};
     moments m = {0, 0, 0};
     for (int i = 0; i < 400000; i++) {
@@ -238,6 +269,7 @@ int main(void) {
         cmocka_unit_test(test_rectangle_samples_are_even_over_its_solid_angle),
         cmocka_unit_test(test_rectangle_is_one_sided),
         cmocka_unit_test(test_rectangle_irradiance),
+        cmocka_unit_test(test_point_lights),
         cmocka_unit_test(test_choice_of_light_is_accounted_for),
         cmocka_unit_test(test_dark_and_empty_scenes_have_nothing_to_draw),
     };

@@ -24,6 +24,8 @@ static uint32_t of_light(const mu_light *light) {
         return MU_FEATURE_STUDIO;
     case MU_DIRECTIONAL:
         return MU_FEATURE_DIRECTIONAL_LIGHTS;
+    case MU_POINT:
+        return MU_FEATURE_POINT_LIGHTS;
     case MU_RECTANGLE_LIGHT:
         return MU_FEATURE_RECTANGLE_LIGHTS;
     }

@@ -33,6 +33,7 @@
     X(CONSTANT,              "constant",              "uniform light from everywhere")                                 \
     X(FILTERED_LIGHT,        "filtered_light",        "the light around filtered for every roughness, and tables of albedos")   \
     X(DIRECTIONAL_LIGHTS,    "directional_lights",    "parallel light")                                                \
+    X(POINT_LIGHTS,          "point_lights",          "light from a point, to all sides or within a cone")             \
     X(RECTANGLE_LIGHTS,      "rectangle_lights",      "sampling of rectangles by area or solid angle")                 \
     X(GLOSSY_REFLECTION,     "glossy_reflection",     "microfacet reflection")                                         \
     X(DELTA_REFLECTION,      "delta_reflection",      "mirrors")                                                       \

@@ -168,7 +168,7 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
 
 static _Bool lights_around(const mu_scene *scene, mu_error *error) {
     for (uint32_t i = 0; i < scene->light_count; i++)
-        if (scene->lights[i].kind == MU_DIRECTIONAL || scene->lights[i].kind == MU_RECTANGLE_LIGHT)
+        if (scene->lights[i].kind == MU_DIRECTIONAL || scene->lights[i].kind == MU_POINT || scene->lights[i].kind == MU_RECTANGLE_LIGHT)
             return mu_fail(error, "light %u is no light around the scene: only --integrator path renders it", i);
     return 1;
 }

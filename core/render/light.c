@@ -27,6 +27,11 @@ struct mu_lights {
     float *choice;                  /* count + 1 bounds; NULL if nothing is to be drawn */
 };
 
+/* Whether no ray can meet it. */
+static _Bool nowhere(const mu_light *light) {
+    return light->kind == MU_DIRECTIONAL || light->kind == MU_POINT;
+}
+
 static mu_vec3 middle_of_objects(const mu_scene *scene) {
     mu_vec3 sum = {0, 0, 0};
     uint32_t count = 0;
@@ -41,6 +46,10 @@ static mu_vec3 middle_of_objects(const mu_scene *scene) {
 static double fluence(const mu_lights *lights, uint32_t index, mu_vec3 middle) {
     const mu_light *light = &lights->lights[index];
     if (light->kind == MU_DIRECTIONAL) return (double)mu_luminance(light->irradiance);
+    if (light->kind == MU_POINT) { /* as if within its cone, where it has one */
+        const mu_vec3 to = mu_sub(middle, light->position);
+        return (double)mu_luminance(light->irradiance) / fmax((double)mu_dot(to, to), 1e-6);
+    }
     if (light->kind == MU_RECTANGLE_LIGHT) {
         const mu_rectangle_light *r = &lights->rectangles[index];
         const mu_vec3 centre = mu_affine_point(&light->to_world, mu_v3(0, 0, 0)), to = mu_sub(middle, centre);
@@ -82,7 +91,7 @@ static _Bool build(mu_lights *lights, const mu_scene *scene, mu_error *error) {
         const mu_light *light = &scene->lights[i];
         if (light->kind == MU_RECTANGLE_LIGHT)
             mu_rectangle_light_make(&lights->rectangles[i], light);
-        else if (light->kind != MU_DIRECTIONAL)
+        else if (!nowhere(light))
             lights->around = i;
         mu_error reason = {.text = ""};
         if (light->kind == MU_ENVIRONMENT && !mu_sky_make_environment(&lights->sky, light, &reason))
@@ -122,7 +131,7 @@ uint32_t mu_lights_choices(const mu_lights *lights) {
 
 _Bool mu_lights_met(const mu_lights *lights) {
     for (uint32_t i = 0; i < lights->count; i++)
-        if (lights->lights[i].kind != MU_DIRECTIONAL) return 1;
+        if (!nowhere(&lights->lights[i])) return 1;
     return 0;
 }
 
@@ -161,6 +170,9 @@ void mu_lights_sample(const mu_lights *lights, mu_vec3 p, const float u[3], mu_l
         memcpy(out->radiance, light->irradiance, sizeof out->radiance);
         out->pdf = 1;
         out->delta = 1;
+        break;
+    case MU_POINT:
+        mu_point_light_sample(light, p, out);
         break;
     case MU_ENVIRONMENT:
     case MU_STUDIO:

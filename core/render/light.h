@@ -12,7 +12,7 @@ typedef struct mu_lights mu_lights;
 typedef struct mu_light_sample {
     mu_vec3 direction; /* unit, toward the light */
     float distance;    /* infinite for lights at infinity */
-    float radiance[3]; /* of a directional light: irradiance facing it, and pdf 1, delta */
+    float radiance[3]; /* of directional and point lights: irradiance facing them, and pdf 1, delta */
     float pdf;         /* per steradian, including the choice of the light; 0: nothing to sample */
     _Bool delta;
 } mu_light_sample;
@@ -25,7 +25,7 @@ void mu_lights_free(mu_lights *lights);
 /* [any] How many lights mu_lights_sample chooses among: with 0 it has nothing to sample, with 1 it ignores
  * u[2]. */
 uint32_t mu_lights_choices(const mu_lights *lights);
-/* [any] Whether a ray may find light at all: not if all lights are directional. */
+/* [any] Whether a ray may find light at all: not if all lights are directional or points. */
 _Bool mu_lights_met(const mu_lights *lights);
 /* What was built: the sampling table of the environment or studio, and the environment's pixels. */
 size_t mu_lights_table_bytes(const mu_lights *lights);

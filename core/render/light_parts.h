@@ -43,6 +43,11 @@ void mu_studio_radiance(mu_vec3 direction, float radiance[3]);
 enum { MU_STUDIO_WIDTH = 256, MU_STUDIO_HEIGHT = 128 };
 void mu_studio_means(const float scale[3], float *luminance);
 
+/* ------------------------------------------------------------------------------------------------ point */
+
+/* Irradiance on what faces it as `radiance`, pdf 1, delta; pdf 0 outside of its cone. */
+void mu_point_light_sample(const mu_light *light, mu_vec3 p, mu_light_sample *out);
+
 /* -------------------------------------------------------------------------------------------- rectangle */
 
 typedef struct mu_rectangle_light {

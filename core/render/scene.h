@@ -98,13 +98,15 @@ typedef struct mu_object {
 } mu_object;
 
 typedef struct mu_light {
-    enum { MU_ENVIRONMENT, MU_CONSTANT, MU_STUDIO, MU_DIRECTIONAL, MU_RECTANGLE_LIGHT } kind;
+    enum { MU_ENVIRONMENT, MU_CONSTANT, MU_STUDIO, MU_DIRECTIONAL, MU_POINT, MU_RECTANGLE_LIGHT } kind;
     char *image;    /* MU_ENVIRONMENT: resolved path of a latitude-longitude image; +z is up */
     char *place;    /* MU_ENVIRONMENT: "scene.json:12:20: $.lights[0].image", for messages about the image */
     float rotation; /* MU_ENVIRONMENT, MU_STUDIO: radians about +z, counter-clockwise */
     float scale[3]; /* multiplies radiance; of MU_CONSTANT it is the radiance; MU_RECTANGLE_LIGHT: radiance */
-    mu_vec3 direction;   /* MU_DIRECTIONAL: toward the light, unit */
-    float irradiance[3]; /* MU_DIRECTIONAL: on a surface that faces it */
+    mu_vec3 direction;   /* MU_DIRECTIONAL: toward the light, unit; MU_POINT: the middle of where it shines */
+    float irradiance[3]; /* on a surface that faces it; MU_POINT: at a distance of 1, which is its intensity */
+    mu_vec3 position;    /* MU_POINT */
+    float cone[2];       /* MU_POINT: cosine of half its angle, and how much more to where it shines in full */
     mu_affine to_world;  /* MU_RECTANGLE_LIGHT: emits along its +z */
     float size[2];
 } mu_light;

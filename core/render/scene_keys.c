@@ -28,6 +28,7 @@ static const struct {
     [MU_KEYS_CONSTANT] = {"constant", {"type", "radiance", NULL}},
     [MU_KEYS_STUDIO] = {"studio", {"type", "rotation", "scale", NULL}},
     [MU_KEYS_DIRECTIONAL] = {"directional", {"type", "direction", "irradiance", NULL}},
+    [MU_KEYS_POINT] = {"point", {"type", "position", "intensity", "direction", "angle", "blend", NULL}},
     [MU_KEYS_RECTANGLE_LIGHT] = {"rectangle_light", {"type", "size", "radiance", "transform", NULL}},
 };
 

@@ -14,9 +14,9 @@
 #include "core/render/scene_read.h"
 
 /* In the order of mu_light.kind. */
-static const char *const types[] = {"environment", "constant", "studio", "directional", "rectangle", NULL};
+static const char *const types[] = {"environment", "constant", "studio", "directional", "point", "rectangle", NULL};
 static const mu_key_set keys[] = {MU_KEYS_ENVIRONMENT, MU_KEYS_CONSTANT, MU_KEYS_STUDIO, MU_KEYS_DIRECTIONAL,
-                                  MU_KEYS_RECTANGLE_LIGHT};
+                                  MU_KEYS_POINT, MU_KEYS_RECTANGLE_LIGHT};
 
 static _Bool read_turn(const mu_place *place, mu_light *light, mu_error *error) {
     float degrees = 0;
@@ -50,14 +50,26 @@ static _Bool read_image(mu_reader *reader, const mu_place *place, mu_light *ligh
 
 static _Bool read_direction(const mu_place *place, mu_light *light, mu_error *error) {
     const mu_place direction = mu_place_member(place, "direction");
-    light->direction = mu_v3(0, 0, 1);
     if (!mu_read_vector(place, "direction", &light->direction, error)) return 0;
     const double x = (double)light->direction.x, y = (double)light->direction.y,
                  z = (double)light->direction.z;
     const double length = sqrt(x * x + y * y + z * z);
     if (!(length > 0)) return mu_place_fail(&direction, error, "must not be the zero vector");
     light->direction = mu_v3((float)(x / length), (float)(y / length), (float)(z / length));
-    return mu_read_color(place, "irradiance", light->irradiance, error);
+    return 1;
+}
+
+static _Bool read_point(const mu_place *place, mu_light *light, mu_error *error) {
+    float angle = 360, blend = 0;
+    light->direction = mu_v3(0, 0, -1);
+    if (!mu_read_vector(place, "position", &light->position, error) || !read_direction(place, light, error) ||
+        !mu_read_color(place, "intensity", light->irradiance, error) ||
+        !mu_read_float(place, "angle", 0, 360, &angle, error) || !mu_read_float(place, "blend", 0, 1, &blend, error))
+        return 0;
+    const double edge = angle < 360 ? cos((double)angle * (3.14159265358979323846 / 360)) : -1;
+    light->cone[0] = (float)edge;
+    light->cone[1] = (float)((1 - edge) * (double)blend);
+    return 1;
 }
 
 static _Bool add_object(mu_reader *reader, const mu_light *light, uint32_t index) {
@@ -89,7 +101,10 @@ static _Bool read_light(mu_reader *reader, const mu_place *place, mu_light *ligh
     case MU_CONSTANT:
         return mu_read_color(place, "radiance", light->scale, error);
     case MU_DIRECTIONAL:
-        return read_direction(place, light, error);
+        light->direction = mu_v3(0, 0, 1);
+        return read_direction(place, light, error) && mu_read_color(place, "irradiance", light->irradiance, error);
+    case MU_POINT:
+        return read_point(place, light, error);
     case MU_RECTANGLE_LIGHT:
         return mu_read_floats(place, "size", 2, 1e-9, MU_LARGEST, light->size, error) &&
                mu_read_color(place, "radiance", light->scale, error) &&

@@ -28,6 +28,7 @@ typedef enum mu_key_set {
     MU_KEYS_CONSTANT,
     MU_KEYS_STUDIO,
     MU_KEYS_DIRECTIONAL,
+    MU_KEYS_POINT,
     MU_KEYS_RECTANGLE_LIGHT,
     MU_KEYS_COUNT
 } mu_key_set;

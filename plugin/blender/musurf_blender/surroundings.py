@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 LARGEST, SINGULAR = 1e9, 1e-9  # of the renderer: any number of a scene; |determinant| over the product of a map's columns
+POINT = 1 / (4 * math.pi)
 AREA = math.pi if bpy.app.version >= (4, 0, 0) else 4
 
 
@@ -62,8 +63,10 @@ def light(data, matrix, name, say):
         if data.angle > math.radians(1):
             say(f"the sun \"{name}\" is {math.degrees(data.angle):.2g} degrees wide; it is a point here")
         return {"type": "directional", "direction": list(matrix.col[2].xyz.normalized()), "irradiance": color}
+    if data.type in ("POINT", "SPOT"):
+        return point(data, matrix, color, name, say)
     if data.type != "AREA" or data.shape not in ("SQUARE", "RECTANGLE"):
-        say(f"the light \"{name}\" is of type {data.type.lower()}{', ' + data.shape.lower() if data.type == 'AREA' else ''}: only suns and square or "
+        say(f"the light \"{name}\" is of type {data.type.lower()}{', ' + data.shape.lower() if data.type == 'AREA' else ''}: only suns, points, spots, and square or "
             "rectangular areas are known here; it is left out")
         return None
     size = [data.size, data.size if data.shape == "SQUARE" else data.size_y]
@@ -79,6 +82,16 @@ def light(data, matrix, name, say):
     axes = [matrix.col[i].xyz / scale[i] for i in range(3)]
     place = [[axes[0][k], -axes[1][k], -axes[2][k], matrix.translation[k]] for k in range(3)]
     return {"type": "rectangle", "size": size, "radiance": radiance, "transform": place}
+
+
+def point(data, matrix, color, name, say):
+    """A point or spot lamp."""
+    if data.shadow_soft_size > 0:
+        say(f"the light \"{name}\" is a ball of radius {data.shadow_soft_size:.2g}; it is a point here, and its shadows are sharp")
+    made = {"type": "point", "position": list(matrix.translation), "intensity": [c * POINT for c in color]}
+    if data.type == "SPOT":
+        made |= {"direction": list(-matrix.col[2].xyz.normalized()), "angle": math.degrees(data.spot_size), "blend": data.spot_blend}
+    return made
 
 
 def linked(socket, kinds):

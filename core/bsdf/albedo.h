@@ -15,8 +15,8 @@
  *     du dS = 2^(1-n) (1 - S)^(1-2^n) (1 - B/A) r² / (ln(A/B) (X + Y) (X + Y B/A) (r + w.z)³) dw.
  * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and where tails are heavy (slopes
  * of no variance) E has a tip there, r^(2 gamma - 2) of std and gtr: sqrt(S) takes the place of S in interpolation; cells are drawn from uniformly in S nevertheless.
- * The square [0, 1]² is cut into patches, and each of them into as many cells as its E asks for: halved along either axis
- * until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
+ * The square [0, 1]² is cut into patches, each of them into halves and they into others where E asks for it, and the last into cells:
+ * halved along either axis until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
  * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic knows no u, which is the azimuth then.
  */
 #ifndef MU_ALBEDO_H
@@ -27,29 +27,31 @@
 
 #include "core/bsdf/musurf.h"
 
-/* Patches along S, and along u at most; halvings of a patch at most. */
+/* Root patches along S, and along u at most; halvings of one at most. */
 enum {
     ALBEDO_ROWS = 4,
     ALBEDO_COLUMNS = 2,
-    ALBEDO_PATCHES = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS,
-    ALBEDO_HALVINGS = 6
+    ALBEDO_ROOTS = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS,
+    ALBEDO_HALVINGS = 9,
+    ALBEDO_PATCH_FLOATS = 16 /* of values to a patch, or there is no room for it */
 };
 
 typedef struct albedo_patch {
     uint32_t node, cell; /* its first */
-    uint8_t log_u, log_s;
+    uint32_t child;      /* the first of two patches that it is halved to; else 0 */
+    uint8_t log_u, log_s, axis;
 } albedo_patch;
 
 typedef struct mu_albedo_side {
     const float *lost;       /* 1 - E, above 0, patch by patch, u by u */
     const float *cumulative; /* of the lobe (1 - E) cos, by cells */
-    uint32_t cells;
+    const albedo_patch *patch;
+    uint32_t patches, cells;
     float average; /* of what is interpolated: 1/pi times the integral of (1 - E) cos */
     float passes;  /* of light that is scattered on: the share that leaves on the other side */
     int roots;     /* n */
     int rooted;    /* sqrt(S) takes the place of S */
     float unsure;  /* the most that a value was off where halving ended before it was near enough; else 0 */
-    albedo_patch patch[ALBEDO_PATCHES];
 } mu_albedo_side;
 
 typedef struct mu_albedo {
@@ -63,10 +65,12 @@ float mu_albedo_lay(const double v[4], mu_albedo_frame *out);
 /* Of a table made where directions are R(-turn) times those of the frame that it is to have. */
 void mu_albedo_turn(mu_albedo_frame *f, double turn);
 
-/* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. */
+/* A direction's place: patch, and in it u and S from 0 to 1; and du dS / dw there. Of which the patch is a part: halvings along
+ * u and S, and the row that it is of all 4 2^log_s. */
 typedef struct albedo_place {
     int patch;
     float u, s, stretch;
+    int log_u, log_s, row;
 } albedo_place;
 
 static inline float albedo_row(const mu_albedo_side *side, float s) {
@@ -77,8 +81,9 @@ static inline double albedo_s(const mu_albedo_side *side, double row) {
     return side->rooted ? row * row : row;
 }
 
-static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_side *side,
-                                         const mu_albedo_frame *f, const float w[3]) {
+/* The root patch. */
+static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side *side,
+                                       const mu_albedo_frame *f, const float w[3]) {
     const float x = f->to[0] * w[0] + f->to[1] * w[1], y = f->to[2] * w[0] + f->to[3] * w[1];
     const float r2 = x * x + y * y, r = sqrtf(r2), n = r + w[2], flat = f->ratio;
     const float X = r > 0 ? f->k * fabsf(x) : f->k, Y = r > 0 ? fabsf(y) : f->k, both = X + Y,
@@ -94,8 +99,26 @@ static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_sid
     for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2;
     const float row = albedo_row(side, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
-    return (albedo_place){(quadrant * t->columns + j) * ALBEDO_ROWS + i, column - (float)j, row - (float)i,
-                          2 * part * (still > 0 ? rest / still : 1e30f) * around / (n * n * n)};
+    return (albedo_place){.patch = (quadrant * t->columns + j) * ALBEDO_ROWS + i,
+                          .u = column - (float)j,
+                          .s = row - (float)i,
+                          .stretch = 2 * part * (still > 0 ? rest / still : 1e30f) * around / (n * n * n),
+                          .row = i};
+}
+
+static inline albedo_place albedo_locate(const mu_albedo *t, const mu_albedo_side *side,
+                                         const mu_albedo_frame *f, const float w[3]) {
+    albedo_place at = albedo_root(t, side, f, w);
+    for (const albedo_patch *p = &side->patch[at.patch]; p->child; p = &side->patch[at.patch]) {
+        float *const x = p->axis ? &at.s : &at.u;
+        const int second = *x >= 0.5f;
+        *x = 2 * *x - (float)second, at.patch = (int)p->child + second;
+        if (p->axis)
+            at.row = 2 * at.row + second, at.log_s++;
+        else
+            at.log_u++;
+    }
+    return at;
 }
 
 static inline int albedo_cell(float *x, int log) {
@@ -120,11 +143,10 @@ static inline float albedo_density(const mu_albedo *t, const mu_albedo_side *sid
     const int j = albedo_cell(&x, p->log_u), i = albedo_cell(&y, p->log_s),
               cell = (int)p->cell + (j << p->log_s) + i;
     const float share = side->cumulative[cell] - (cell ? side->cumulative[cell - 1] : 0);
-    const float rows = (float)(ALBEDO_ROWS << p->log_s),
-                row = (float)((at.patch % ALBEDO_ROWS << p->log_s) + i);
+    const float rows = (float)(ALBEDO_ROWS << (at.log_s + p->log_s)), row = (float)((at.row << p->log_s) + i);
     const float over_height =
         (side->rooted ? rows * rows / (2 * row + 1) : rows) / (t->quadrants == 1 ? 4 : 1);
-    return fminf(share * (float)(t->columns << p->log_u) * over_height * at.stretch, 0x1p+126f);
+    return fminf(share * (float)(t->columns << (at.log_u + p->log_u)) * over_height * at.stretch, 0x1p+126f);
 }
 
 /* The direction at u and S of a quadrant. */
@@ -158,8 +180,14 @@ typedef struct albedo_source {
     albedo_effort *effort;             /* so far */
     size_t panels;                     /* that refining a table may take, of that */
 } albedo_source;
-/* Makes a table in `most` floats; returns how many it took. */
-size_t mu_albedo_make(const albedo_source *source, mu_albedo *out, float *values, size_t most);
+/* Where tables put their values, and their patches: so many of both, and so many taken. */
+typedef struct albedo_room {
+    float *values;
+    albedo_patch *patch;
+    size_t most[2], used[2];
+} albedo_room;
+/* Makes a table in `floats` values at most, and in what room there is. */
+void mu_albedo_make(const albedo_source *source, mu_albedo *out, albedo_room *room, size_t floats);
 /* Where slopes crowd, in slope units: gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too. */
 double mu_albedo_core(const albedo_source *source, const mu_closure_f *c);
 

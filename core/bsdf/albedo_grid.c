@@ -16,7 +16,7 @@
 #if MU_REAL_BITS == 24
 
 /* `unsure` is of nodes up to PROMISED, 2.2; steeper tables are for what is beyond what is promised, and coarser. */
-enum { GRID_HALVINGS = 5, STEEP_HALVINGS = 4, PROMISED = 10, PROBES = 4, ROOTS_HOLD = 3 };
+enum { GRID_HALVINGS = 8, STEEP_HALVINGS = 6, PROMISED = 10, PROBES = 4, ROOTS_HOLD = 3 };
 
 const float mu_albedo_nodes[ALBEDO_NODES] = {-16,   -7.5f, -5.5f, -4,    -2.5f, -1.7f, -1,
                                              -0.4f, 0.15f, 0.65f, 1.15f, 1.9f,  2.9f,  4.2f};
@@ -135,13 +135,14 @@ static void fill_averages(const albedo_grid *grid, int side, float *out) {
         }
 }
 
-size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *values, size_t most,
-                           albedo_grid *out, float *unsure) {
+void mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, albedo_room *room, albedo_grid *out,
+                         float *unsure) {
     const int sides = like->surface->transmission ? 2 : 1;
     albedo_source source = *like;
-    source.panels = ALBEDO_PANELS * 3 / 4 / 2 / ALBEDO_GRID_TABLES;
+    const size_t may_take = ALBEDO_PANELS * 3 / 4 / 2, before = like->effort->panels;
     source.trusting = 1, source.error /= 2; /* the other half is for what lies between */
-    size_t used = (size_t)(sides * ALBEDO_GRID_AVERAGES);
+    float *const averages = room->values + room->used[0];
+    room->used[0] += (size_t)(sides * ALBEDO_GRID_AVERAGES);
     float worst = 0;
     for (int i = 1; i < ALBEDO_NODES; i++)
         for (int j = 1; j <= i; j++) {
@@ -151,21 +152,22 @@ size_t mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, float *v
             source.transform = m, source.halvings = i > PROMISED ? STEEP_HALVINGS : GRID_HALVINGS;
             /* it changes slowly, but where slopes are steep */
             source.like = j == i || i >= PROMISED || j % ROOTS_HOLD == 1 ? NULL : &t[-1];
-            const size_t left = most - used, own = (size_t)(sides * ALBEDO_GRID_MOST);
-            used += mu_albedo_make(&source, t, values + used, left < own ? left : own);
+            /* a hard table may take more than its part of the work that is left */
+            const size_t taken = source.effort->panels - before;
+            source.panels = (may_take > taken ? may_take - taken : 0) /
+                            (size_t)(1 + (ALBEDO_GRID_TABLES - table_at(i, j)) / 8);
+            mu_albedo_make(&source, t, room, (size_t)(sides * ALBEDO_GRID_MOST));
             for (int side = 0; side < sides && i <= PROMISED; side++)
                 worst = fmaxf(worst, t->side[side].unsure);
         }
     source.transform = NULL;
     *out = (albedo_grid){table, {NULL, NULL}};
     for (int side = 0; side < sides; side++) {
-        float *const averages = values + side * ALBEDO_GRID_AVERAGES;
-        fill_averages(out, side, averages);
-        out->log_average[side] = averages;
+        fill_averages(out, side, averages + side * ALBEDO_GRID_AVERAGES);
+        out->log_average[side] = averages + side * ALBEDO_GRID_AVERAGES;
     }
     worst = fmaxf(worst, measure_gap(&source, out));
     *unsure = worst > (float)like->error ? worst : 0;
-    return used;
 }
 
 #endif

@@ -70,25 +70,47 @@ static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
     return sums[0];
 }
 
-/* The cells' integrals, unless they are NULL; returns the average. */
+/* Sums over a side: the cells' integrals, unless they are NULL. */
+typedef struct summing {
+    const mu_albedo *t;
+    const mu_albedo_frame *f;
+    const mu_albedo_side *side;
+    float *cells;
+    double total, cosines;
+} summing;
+
+/* A patch from u on, `width` of u wide: row `row` of 4 2^log. */
+static void sum_patch(summing *to, int quadrant, const albedo_patch *p, double u, double width, int row,
+                      int log) {
+    if (p->child) {
+        const albedo_patch *const half = &to->side->patch[p->child];
+        for (int k = 0; k < 2; k++)
+            if (p->axis)
+                sum_patch(to, quadrant, &half[k], u, width, 2 * row + k, log + 1);
+            else
+                sum_patch(to, quadrant, &half[k], u + k * width / 2, width / 2, row, log);
+        return;
+    }
+    const int across = 1 << p->log_u, up = 1 << p->log_s, rows = ALBEDO_ROWS << (log + p->log_s);
+    for (int i = 0; i < across * up; i++) {
+        const double from = u + width * (i / up) / across, at = (row << p->log_s) + i % up;
+        const double sum =
+            share(to->t, to->f, to->side, quadrant, from, from + width / across,
+                  albedo_s(to->side, at / rows), albedo_s(to->side, (at + 1) / rows), &to->cosines);
+        if (to->cells) to->cells[p->cell + (uint32_t)i] = (float)sum;
+        to->total += sum;
+    }
+}
+
+/* Returns the average. */
 static double integrate_cells(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side,
                               float *cells, double *total) {
-    double cosines = 0;
-    *total = 0;
-    for (int k = 0; k < t->quadrants * t->columns * ALBEDO_ROWS; k++) {
-        const albedo_patch *p = &side->patch[k];
-        const int column = k / ALBEDO_ROWS % t->columns, across = 1 << p->log_u, up = 1 << p->log_s;
-        for (int i = 0; i < across * up; i++) {
-            const double u = (column + (double)(i / up) / across) / t->columns,
-                         row = (k % ALBEDO_ROWS + (double)(i % up) / up) / ALBEDO_ROWS;
-            const double sum =
-                share(t, f, side, k / ALBEDO_ROWS / t->columns, u, u + 1.0 / across / t->columns,
-                      albedo_s(side, row), albedo_s(side, row + 1.0 / up / ALBEDO_ROWS), &cosines);
-            if (cells) cells[p->cell + (uint32_t)i] = (float)sum;
-            *total += sum;
-        }
-    }
-    return *total / cosines;
+    summing to = {t, f, side, cells, 0, 0};
+    for (int k = 0; k < t->quadrants * t->columns * ALBEDO_ROWS; k++)
+        sum_patch(&to, k / ALBEDO_ROWS / t->columns, &side->patch[k],
+                  (double)(k / ALBEDO_ROWS % t->columns) / t->columns, 1.0 / t->columns, k % ALBEDO_ROWS, 0);
+    *total = to.total;
+    return to.total / to.cosines;
 }
 
 double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side) {
@@ -120,20 +142,30 @@ void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
     }
     const float before = low ? side->cumulative[low - 1] : 0;
     float within = fminf((u0 - before) / (side->cumulative[low] - before), 0x0.ffffffp0f);
-    int patch = 0;
-    while (patch + 1 < t->quadrants * t->columns * ALBEDO_ROWS && side->patch[patch + 1].cell <= low) patch++;
-    const albedo_patch *p = &side->patch[patch];
+    int root = 0, log = 0;
+    while (root + 1 < t->quadrants * t->columns * ALBEDO_ROWS && side->patch[root + 1].cell <= low) root++;
+    const albedo_patch *p = &side->patch[root];
+    double at = root / ALBEDO_ROWS % t->columns, width = 1,
+           row = root % ALBEDO_ROWS; /* in columns, and in rows of 2^-log */
+    while (p->child) {
+        const int second = side->patch[p->child + 1].cell <= low;
+        if (p->axis)
+            row = 2 * row + second, log++;
+        else
+            width /= 2, at += second * width;
+        p = &side->patch[p->child + (uint32_t)second];
+    }
     const int i = (int)(low - p->cell), up = 1 << p->log_s;
-    int quadrant = patch / ALBEDO_ROWS / t->columns;
+    int quadrant = root / ALBEDO_ROWS / t->columns;
     if (t->quadrants == 1) { /* which of the four */
         quadrant = (int)(4 * within);
         within = 4 * within - (float)quadrant;
     }
-    const float u = ((float)(i / up) + within) / (float)(1 << p->log_u);
-    const double row = patch % ALBEDO_ROWS + (double)(i % up) / up, from = albedo_s(side, row / ALBEDO_ROWS),
-                 to = albedo_s(side, (row + 1.0 / up) / ALBEDO_ROWS);
-    mu_albedo_direction(t, side, f, quadrant,
-                        ((float)(patch / ALBEDO_ROWS % t->columns) + u) / (float)t->columns,
+    at += width * ((double)(i / up) + (double)within) / (1 << p->log_u);
+    row = row * up + i % up;
+    const double rows = ALBEDO_ROWS << (log + p->log_s), from = albedo_s(side, row / rows),
+                 to = albedo_s(side, (row + 1) / rows);
+    mu_albedo_direction(t, side, f, quadrant, (float)(at / t->columns),
                         (float)(from + (to - from) * (double)u1), w);
 }
 

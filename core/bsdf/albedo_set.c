@@ -11,7 +11,7 @@
 /* Where a tilt has edges of its own, tables of blurring are sqrt(2) apart, from here to there. */
 static const float tilted_from = -6, tilted_to = 3, tilted_step = 0.5f;
 /* Floats that a table takes at most: alike in all azimuths, even along two axes, or tilted. */
-enum { FEW = 1 << 9, SOME = 1 << 13, MANY = 1 << 16, BLUR_HALVINGS = 4 };
+enum { FEW = 1 << 10, SOME = 1 << 14, MANY = 1 << 16, BLUR_CELLS = 4, BLUR_HALVINGS = 7 };
 
 /* M = R(left) diag R(right), from which R(-left) takes what comes last, a turn of the world. For then float holds any M: an entry
  * of M^-1 is as large as its column, and not as another axis that lies between the world's. What is round keeps its M. */
@@ -36,11 +36,15 @@ static mu_definition reduced(const mu_definition *d) {
     return single;
 }
 
-static size_t floats(const mu_definition *d) {
+/* Floats of a table; and of one that is blurred, on average. */
+static size_t floats_of_one(const mu_definition *d, int is_blurred) {
     const int tilted = d->tilt[0] != 0 || d->tilt[1] != 0 || d->ndf == MU_TABULATED || d->ndf == MU_CUSTOM;
-    const size_t one = tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME;
-    const size_t side = (1u << BLUR_HALVINGS) + 1, blurred = (tilted ? 32u : 8u) * 2 * side * side;
-    return (one + (d->compensation_blurs ? ALBEDO_BLURS * blurred : 0)) * (d->transmission ? 2 : 1);
+    const size_t side = (1u << BLUR_CELLS) + 1, sides = d->transmission ? 2 : 1;
+    if (is_blurred) return (tilted ? 32u : 8u) * 2 * side * side * sides;
+    return (tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME) * sides;
+}
+static size_t floats(const mu_definition *d) {
+    return floats_of_one(d, 0) + (d->compensation_blurs ? ALBEDO_BLURS * floats_of_one(d, 1) : 0);
 }
 
 /* GGX of the same masking: what blurring makes of any distribution. */
@@ -60,10 +64,15 @@ static size_t grid_floats(const mu_definition *d) {
     return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) *
                     (d->transmission ? 2 : 1));
 }
-/* Values; tables of grids; the surfaces that they are made from. */
+/* Values; patches; tables of grids; the surfaces that they are made from. */
+static size_t all_floats(const mu_definition *d) {
+    return floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d);
+}
 static size_t values_bytes(const mu_definition *d) {
-    return padded(sizeof(mu_albedo_set) +
-                  (floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d)) * sizeof(float));
+    return padded(sizeof(mu_albedo_set) + all_floats(d) * sizeof(float));
+}
+static size_t patches_bytes(const mu_definition *d) {
+    return padded(all_floats(d) / ALBEDO_PATCH_FLOATS * sizeof(albedo_patch));
 }
 static size_t grids_bytes(const mu_definition *d) {
     return padded(grid_tables(d) * sizeof(mu_albedo));
@@ -72,7 +81,7 @@ static size_t grids_bytes(const mu_definition *d) {
 size_t mu_albedo_set_bytes(const mu_definition *d) {
     const mu_definition single = reduced(d), ggx = blurred(&single);
     const size_t one = MU(mu_surface_bytes)(&single), other = MU(mu_surface_bytes)(&ggx);
-    return values_bytes(d) + grids_bytes(d) + padded(one > other ? one : other);
+    return values_bytes(d) + patches_bytes(d) + grids_bytes(d) + padded(one > other ? one : other);
 }
 
 /* The least roughness to which blurring raises a surface (mu_blur): asked of it, for only it knows what stands for a histogram. */
@@ -109,7 +118,7 @@ static void blurred_view(const surface *s, float blur, double v[4]) {
     for (int k = 0; k < 4; k++) v[k] = (double)(c.map.view[k] / c.map.view_z);
 }
 
-static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used, size_t most) {
+static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *room) {
     const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
     const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f)),
                 last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
@@ -121,7 +130,7 @@ static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used,
         source->blur = exp2f(at) * 1.000001f;
         source->panels = ALBEDO_PANELS * 3 / 4 / ALBEDO_BLURS;
         out->log_blur[out->levels - 1] = at;
-        used += mu_albedo_make(source, &out->level[out->levels++], out->values + used, most - used);
+        mu_albedo_make(source, &out->level[out->levels++], room, 2 * floats_of_one(source->definition, 1));
     }
     for (int k = 0; k < 2 * out->levels - 3; k++) {
         double v[4];
@@ -132,34 +141,28 @@ static size_t make_blurs(albedo_source *source, mu_albedo_set *out, size_t used,
         for (int side = 0; side < sides; side++)
             out->log_average[side][k] = (float)log(lobe_average(&lobe, side));
     }
-    return used;
-}
-
-static size_t make_grid(const albedo_source *source, mu_albedo *table, float *values, albedo_grid *out,
-                        float *unsure) {
-    float more;
-    const size_t used =
-        mu_albedo_grid_make(source, table, values, grid_floats(source->definition), out, &more);
-    *unsure = fmaxf(*unsure, more);
-    return used;
 }
 
 /* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
-static size_t make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
-                         size_t used) {
+static void make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
+                       albedo_room *room) {
     const mu_definition ggx = blurred(source->definition);
-    used += make_grid(source, table, out->values + used, &out->grid, &out->unsure);
+    float other = 0;
+    mu_albedo_grid_make(source, table, room, &out->grid, &out->unsure);
     if (source->definition->ndf == MU_GGX) out->blurred = out->grid, out->blurs = 1;
-    if (!out->blurs || out->blurred.table) return used;
+    if (!out->blurs || out->blurred.table) return;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
-    return used +
-           make_grid(source, table + ALBEDO_GRID_TABLES, out->values + used, &out->blurred, &out->unsure);
+    mu_albedo_grid_make(source, table + ALBEDO_GRID_TABLES, room, &out->blurred, &other);
+    out->unsure = fmaxf(out->unsure, other);
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     const mu_definition single = reduced(d);
-    const size_t most = floats(d);
-    char *const grid = (char *)out + values_bytes(d), *const single_at = grid + grids_bytes(d);
+    char *const patches = (char *)out + values_bytes(d), *const grid = patches + patches_bytes(d),
+                *const single_at = grid + grids_bytes(d);
+    albedo_room room = {.values = out->values,
+                        .patch = (void *)patches,
+                        .most = {all_floats(d), all_floats(d) / ALBEDO_PATCH_FLOATS}};
     albedo_effort effort = {0, 0};
     albedo_source source = {.definition = &single,
                             .error = d->compensation_error,
@@ -170,18 +173,19 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     source.surface = MU(mu_surface_make)(&single, single_at);
     albedo_slope slopes[ALBEDO_SLOPES];
     if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
-    size_t used = mu_albedo_make(&source, &out->level[0], out->values, most);
+    mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
     out->levels = 1, out->blurs = d->compensation_blurs;
     out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, {NULL, NULL}};
     if (d->compensation_varies)
-        used = make_grids(&source, out, (void *)grid, single_at, used);
+        make_grids(&source, out, (void *)grid, single_at, &room);
     else if (out->blurs)
-        used = make_blurs(&source, out, used, most);
+        make_blurs(&source, out, &room);
     float own = 0;
     for (int k = 0; k < (d->transmission ? 2 : 1); k++) own = fmaxf(own, out->level[0].side[k].unsure);
     if (own > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, own);
     for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
-    out->bytes = sizeof *out + used * sizeof(float) + grids_bytes(d);
+    out->bytes =
+        sizeof *out + room.used[0] * sizeof(float) + room.used[1] * sizeof(albedo_patch) + grids_bytes(d);
 }
 
 void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {

@@ -64,9 +64,9 @@ void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out);
 /* Blurred to alpha, which makes V of s M^-1. */
 void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out);
 
-/* Makes the tables of a grid in `most` floats; returns how many it took. */
-size_t mu_albedo_grid_make(const albedo_source *source, mu_albedo *table, float *values, size_t most,
-                           albedo_grid *out, float *unsure);
+/* Makes the tables of a grid. */
+void mu_albedo_grid_make(const albedo_source *source, mu_albedo *table, albedo_room *room, albedo_grid *out,
+                         float *unsure);
 /* Its tables for V = s M^-1. */
 void mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *out);
 

@@ -88,12 +88,6 @@ static int check_histogram(const mu_definition *d, mu_complaint *why) {
     return largest > 0 ? 1 : refuse(why, "histogram", "all weights are 0: one at least must be larger");
 }
 
-/* Tables cannot follow a tilted surface that turns its back within less than a cell (measured: 8 % of light off here). */
-static int tilts_too_much(const mu_definition *d) {
-    const double width = mu_slope_width(d);
-    return width > 0 && d->ndf != MU_TABULATED && hypot(d->tilt[0], d->tilt[1]) > 4 * width;
-}
-
 /* All azimuths alike, before M. */
 static int is_even(const mu_definition *d) {
     return d->tilt[0] == 0 && d->tilt[1] == 0 && d->ndf != MU_TABULATED && d->ndf != MU_CUSTOM;
@@ -120,9 +114,6 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
     } else if (d->multiple == MU_COMPENSATED && d->compensation_varies && !is_even(d)) {
         right = "compensated needs a level distribution that is isotropic before M, or a constant M: the "
                 "random walk takes any";
-    } else if (d->multiple == MU_COMPENSATED && tilts_too_much(d)) {
-        right = "compensated needs a tilt of at most 4 alpha, or its tables are too coarse: the random walk "
-                "takes any";
     }
     return right ? refuse(why, "multiple", right) : 1;
 }

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * albedo_maker.h: what makes a side of a table (albedo_patch.c), for albedo.c, which makes tables. Float only.
+ */
+#ifndef MU_ALBEDO_MAKER_H
+#define MU_ALBEDO_MAKER_H
+
+#include "core/bsdf/albedo.h"
+
+/* Nodes along a side of a root patch whose values are kept until it is done, what is between them included. */
+enum { ALBEDO_FINEST = 7, ALBEDO_SIDE = (1 << ALBEDO_FINEST) + 1 };
+
+/* A side of a table while its patches grow, one root patch after the other. */
+typedef struct patch_maker {
+    const albedo_source *source;
+    const mu_albedo *table;
+    mu_albedo_side *side;
+    float *values;       /* of its nodes, and then of its cells */
+    albedo_patch *patch; /* its own */
+    size_t floats, most; /* that it may take, and patches */
+    size_t nodes;        /* so far */
+    size_t pending;      /* patches that are still to grow */
+    double core;
+    float turn;                           /* +1; -1 from below */
+    int quadrant, column, row;            /* of the root patch */
+    int parted;                           /* light is transmitted, too */
+    float seen[ALBEDO_SIDE][ALBEDO_SIDE]; /* [u][S]: what was evaluated already, else NaN */
+    float edge[ALBEDO_ROWS]
+              [ALBEDO_SIDE]; /* of the root patches of the column before, where they meet those of this */
+} patch_maker;
+
+/* A closure of the source; 0 if it sees nothing. */
+int mu_albedo_bind(const albedo_source *s, const float w[3], mu_closure_f *c);
+/* 1 - E at u and S of the root patch, from 0 to 1. */
+float mu_albedo_evaluate(const patch_maker *m, double u, double s);
+/* All patches of the side, and its lobe, by that much work (albedo_effort). */
+void mu_albedo_grow(patch_maker *m, size_t panels);
+
+#endif

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * albedo_patch.c: grows the patches of a table's side as fine as the definition asks: cells are halved along an axis until
+ * what lies between their nodes (look_between) differs from what the nodes say by no more than half of what E may be off, either
+ * axis adding its part; where a patch has LEAF halvings of cells along an axis, it is itself halved, so that cells are small
+ * only where E asks for it: along the curves where a tilted surface turns its back, or total reflection begins.
+ *
+ * A kink halves with the cells, all else quarters; what is between nodes is computed to be compared, so that every cell was
+ * tested; of tables that stand between others (of blurring, of a grid) that a kink halves is trusted, which saves half of
+ * the work. Hardly anything is computed twice. Where halving has to end before (`halvings`, memory, or work), `unsure` says by
+ * how much that leaves values off.
+ */
+#include "core/bsdf/albedo_maker.h"
+#include "core/bsdf/distribution.h"
+#include "core/bsdf/multiple.h"
+
+#if MU_REAL_BITS == 24
+
+enum { LEAF = 2, FINEST = ALBEDO_FINEST, SIDE = ALBEDO_SIDE };
+static const float least = 1e-7f; /* what is lost at least: the lobe exists everywhere */
+
+/* A part of a root patch, along u and S: the at-th of 2^level, in 2^log cells. */
+typedef struct rect {
+    int level[2], at[2], log[2];
+    float left[2]; /* along either axis: what it is off, as far as is known */
+} rect;
+
+int mu_albedo_bind(const albedo_source *s, const float w[3], closure *c) {
+    if (!MU(mu_bind)(s->surface, w, s->transform, c)) return 0;
+    if (s->blur > 0) MU(mu_blur)(c, s->blur);
+    return 1;
+}
+
+float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
+    float w[3];
+    closure c;
+    mu_albedo_direction(m->table, m->side, &m->table->frame, m->quadrant,
+                        (float)((m->column + u) / m->table->columns),
+                        (float)albedo_s(m->side, (m->row + s) / ALBEDO_ROWS), w);
+    for (int k = 0; k < 3; k++) w[k] *= m->turn;
+    if (!mu_albedo_bind(m->source, w, &c)) return 1;
+    if (m->source->slopes && c.kernel->traits & HAS_JUMPS) {
+        m->source->effort->panels += ALBEDO_SLOPES / 11; /* of as many slopes */
+        return fmaxf(1 - mu_albedo_of_slopes(&c, m->source->slopes), least);
+    }
+    const double allowed = fmin(m->source->error / 4, 1e-3);
+    return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed, m->source->effort), least);
+}
+
+/* The value at j, i of 2^log each of the root patch. */
+static float value_at(patch_maker *m, int j, int log_u, int i, int log_s) {
+    const double u = (double)j / (1 << log_u), s = (double)i / (1 << log_s);
+    if (log_u > FINEST || log_s > FINEST) return mu_albedo_evaluate(m, u, s);
+    float *known = &m->seen[m->table->columns == 1 ? 0 : j << (FINEST - log_u)][i << (FINEST - log_s)];
+    if (isnan(*known)) *known = mu_albedo_evaluate(m, u, s);
+    return *known;
+}
+
+/* The value at j, i of a part whose cells are halved `more` times along an axis, or -1 for neither. */
+static float at(patch_maker *m, const rect *r, int j, int i, int axis, int more) {
+    const int log_u = r->log[0] + (axis == 0 ? more : 0), log_s = r->log[1] + (axis == 1 ? more : 0);
+    return value_at(m, (r->at[0] << log_u) + j, r->level[0] + log_u, (r->at[1] << log_s) + i,
+                    r->level[1] + log_s);
+}
+
+/* Where the root patch's line at u meets the angle at which total reflection begins: S from 0 to 1, or below 0 if nowhere. */
+static float critical(const patch_maker *m, double u) {
+    const double index = m->source->definition->dielectric, eta = m->turn < 0 ? 1 / index : index;
+    float w[3];
+    if (!m->parted || !(eta < 1)) return -1;
+    mu_albedo_direction(m->table, m->side, &m->table->frame, m->quadrant,
+                        (float)((m->column + u) / m->table->columns), 0.5f, w);
+    const float flat = hypotf(w[0], w[1]), sine = (float)eta;
+    const float at_it[3] = {w[0] / flat * sine, w[1] / flat * sine, sqrtf(1 - sine * sine)};
+    const albedo_place place = albedo_root(m->table, m->side, &m->table->frame, at_it);
+    return place.patch % ALBEDO_ROWS == m->row ? place.s : -1;
+}
+
+/* What a line between nodes, the j-th, is off at S of the root patch. */
+static float off_at(patch_maker *m, const rect *r, int j, float s) {
+    float within = s * (float)(1 << r->level[1]) - (float)r->at[1];
+    if (!(within >= 0 && within <= 1)) return 0;
+    const int cell = albedo_cell(&within, r->log[1]);
+    const float from = at(m, r, j, cell, -1, 0), to = at(m, r, j, cell + 1, -1, 0);
+    const double u = (r->at[0] + (double)j / (1 << r->log[0])) / (1 << r->level[0]);
+    return fabsf(mu_albedo_evaluate(m, u, (double)s) - from - (to - from) * within);
+}
+
+/* What a cell is off in its middle. */
+static float off_within(patch_maker *m, const rect *r, int j, int i) {
+    const int log_u = r->log[0] + 1, log_s = r->log[1] + 1;
+    const float here = value_at(m, (r->at[0] << log_u) + 2 * j + 1, r->level[0] + log_u,
+                                (r->at[1] << log_s) + 2 * i + 1, r->level[1] + log_s);
+    return fabsf(here - (at(m, r, j, i, -1, 0) + at(m, r, j + 1, i, -1, 0) + at(m, r, j, i + 1, -1, 0) +
+                         at(m, r, j + 1, i + 1, -1, 0)) /
+                            4);
+}
+
+/* The most that lines between nodes along an axis are off what is midway; half of what cells are off in their middle, to which
+ * both axes add; and what lines are off where total reflection begins, however narrow that is. */
+static float look_between(patch_maker *m, const rect *r, int axis, size_t panels) {
+    const int cells = 1 << r->log[axis], lines = 1 << r->log[!axis], round = m->table->columns == 1;
+    float worst = 0;
+    for (int k = 0; k <= (round ? 0 : lines); k++) {
+        const float kink = axis ? critical(m, (r->at[0] + (double)k / lines) / (1 << r->level[0])) : -1;
+        if (kink >= 0) worst = fmaxf(worst, off_at(m, r, k, kink));
+        for (int i = 0; i < cells && m->source->effort->panels < panels; i++) {
+            const float here = axis ? at(m, r, k, 2 * i + 1, 1, 1) : at(m, r, 2 * i + 1, k, 0, 1),
+                        from = axis ? at(m, r, k, i, -1, 0) : at(m, r, i, k, -1, 0),
+                        to = axis ? at(m, r, k, i + 1, -1, 0) : at(m, r, i + 1, k, -1, 0);
+            worst = fmaxf(worst, fabsf(here - (from + to) / 2));
+            if (k < lines && !round) worst = fmaxf(worst, off_within(m, r, axis ? k : i, axis ? i : k) / 2);
+        }
+    }
+    return worst;
+}
+
+static size_t floats_of(const rect *r) {
+    const size_t across = (size_t)1 << r->log[0], up = (size_t)1 << r->log[1];
+    return (across + 1) * (up + 1) + across * up;
+}
+
+/* May a part have twice as many cells, as one patch or two? What is pending still needs 13 floats each. */
+static int has_room(const patch_maker *m, const rect *r, int patches) {
+    const size_t needed = 2 * floats_of(r) + 13 * m->pending;
+    return m->nodes + m->side->cells + needed <= m->floats && m->side->patches + (size_t)patches <= m->most;
+}
+
+/* Halves cells until both axes are near enough, or the work so far comes to `panels`; what is left is added to the side's.
+ * Returns the axis along which the patch itself has to be halved, or -1. */
+static int refine(patch_maker *m, rect *r, size_t panels) {
+    const albedo_source *const source = m->source;
+    const float wanted = (float)source->error / 2;
+    const int isotropic = m->table->columns == 1;
+    /* a cell at least for each 1.5 of ln(A/B) that u is to a column */
+    const float cells = m->table->frame.log / (1.5f * (float)m->table->columns);
+    float *const left = r->left;
+    int done[2] = {isotropic, 0}, split = -1;
+    /* of a root patch something has to be known */
+    const int is_root = !(left[0] > 0 || left[1] > 0);
+    if (is_root) panels = SIZE_MAX;
+    for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
+        if (done[axis]) continue;
+        const float before = left[axis];
+        const int few = axis == 0 && (float)(1 << (r->level[0] + r->log[0])) < cells;
+        left[axis] = few ? 1 : look_between(m, r, axis, panels);
+        done[axis] = 1;
+        /* of a look that has to end early, what the one before said is known, at most */
+        if (source->effort->panels >= panels && !few) left[axis] = fmaxf(left[axis], before);
+        if (left[axis] <= wanted) continue;
+        if (r->level[axis] + r->log[axis] >= source->halvings || (source->effort->panels >= panels && !few))
+            continue;
+        if (r->log[axis] == LEAF) {
+            if (split < 0 || left[axis] > left[split]) split = axis;
+            continue;
+        }
+        if (!has_room(m, r, 0)) continue;
+        r->log[axis]++;
+        done[axis] = 0;
+        if (!isotropic && left[axis] > 4 * wanted)
+            done[!axis] = split == !axis; /* new rows have to be seen along the other axis */
+        left[axis] /= 2;
+        if (source->trusting && left[axis] <= wanted) done[axis] = 1;
+    }
+    if (split >= 0 && has_room(m, r, 2)) return split;
+    if (fmaxf(left[0], left[1]) > wanted) m->side->unsure = fmaxf(m->side->unsure, left[0] + left[1]);
+    return -1;
+}
+
+static void store(patch_maker *m, albedo_patch *p, const rect *r) {
+    const int across = 1 << r->log[0], up = 1 << r->log[1];
+    *p = (albedo_patch){.node = (uint32_t)m->nodes,
+                        .cell = m->side->cells,
+                        .log_u = (uint8_t)r->log[0],
+                        .log_s = (uint8_t)r->log[1]};
+    for (int j = 0; j <= across; j++)
+        for (int i = 0; i <= up; i++) m->values[m->nodes++] = at(m, r, j, i, -1, 0);
+    m->side->cells += (uint32_t)(across * up);
+}
+
+/* A patch, and what it is halved to, until the work comes to `panels`: the first half may take three quarters of what is left. */
+static void fill(patch_maker *m, uint32_t patch, rect r, size_t panels) {
+    const int axis = refine(m, &r, panels);
+    if (axis < 0) {
+        store(m, &m->patch[patch], &r);
+        return;
+    }
+    const uint32_t child = m->side->patches;
+    m->side->patches += 2;
+    m->patch[patch] = (albedo_patch){.cell = m->side->cells, .child = child, .axis = (uint8_t)axis};
+    const size_t so_far = m->source->effort->panels;
+    r.level[axis]++, r.at[axis] *= 2, r.log[axis]--;
+    m->pending++;
+    fill(m, child, r, panels > so_far ? so_far + (panels - so_far) / 4 * 3 : so_far);
+    m->pending--;
+    r.at[axis]++;
+    fill(m, child + 1, r, panels);
+}
+
+/* Nothing is known of a root patch but the edges where it meets those before. */
+static void start(patch_maker *m, int k) {
+    float below[SIDE];
+    const int row = k % ALBEDO_ROWS, column = k / ALBEDO_ROWS % m->table->columns;
+    if (column > 0 || row > 0)
+        for (int j = 0; j < SIDE; j++) below[j] = m->seen[j][SIDE - 1];
+    for (int i = 0; i < SIDE; i++) {
+        if (k > 0) m->edge[m->row][i] = m->seen[SIDE - 1][i];
+        for (int j = 0; j < SIDE; j++) m->seen[j][i] = NAN;
+    }
+    m->row = row, m->column = column, m->quadrant = k / ALBEDO_ROWS / m->table->columns;
+    for (int i = 0; column > 0 && i < SIDE; i++) m->seen[0][i] = m->edge[row][i];
+    for (int j = 0; row > 0 && j < SIDE; j++) m->seen[j][0] = below[j];
+}
+
+void mu_albedo_grow(patch_maker *m, size_t panels) {
+    albedo_effort *const effort = m->source->effort;
+    mu_albedo_side *const side = m->side;
+    const int roots = m->table->quadrants * m->table->columns * ALBEDO_ROWS;
+    /* what is not even turns within a quadrant as it likes, and a look sees nodes alone */
+    const int least_log = m->table->quadrants > 1 ? LEAF : 1;
+    const rect whole = {{0, 0}, {0, 0}, {m->table->columns == 1 ? 0 : least_log, least_log}, {0, 0}};
+    side->unsure = 0, effort->off = 0;
+    side->patch = m->patch, side->patches = (uint32_t)roots, side->cells = 0, m->nodes = 0;
+    for (int k = 0; k < roots; k++) {
+        const size_t before = effort->panels;
+        start(m, k);
+        m->pending = (size_t)(roots - 1 - k);
+        /* most of the work is for few of them: each may take all but some for the others */
+        fill(m, (uint32_t)k, whole, before + (k == roots - 1 ? panels : panels / 8 * 7));
+        panels -= effort->panels - before < panels ? effort->panels - before : panels;
+    }
+    if (effort->off > m->source->error / 2) side->unsure = fmaxf(side->unsure, (float)effort->off);
+    side->lost = m->values;
+    mu_albedo_fill_lobe(m->table, side, m->values + m->nodes);
+}
+
+#endif

@@ -116,42 +116,53 @@ void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, floa
     for (int k = 0; k < 4; k++) rgb[k] = sum[k];
 }
 
-/* Reads in one square: where, and with what weights, first; that is worked out for several at a time. */
-static inline void sum_square(const mu_ibl_square *s, size_t count, const float *restrict u,
-                              const float *restrict v, const float *restrict weight, float share,
-                              float *restrict sum) {
-    const float side = (float)s->side;
-    const int whole = (int)s->side + 2;
+/* Below, one by one is faster. */
+enum { SEVERAL = 4 };
+
+/* Adds reads, each from its own square: where, and with what weights, first; that is worked out for several at a time. */
+static inline void sum_squares(size_t count, const mu_ibl_square *const *squares, const float *restrict u,
+                               const float *restrict v, const float *restrict weight, float *restrict sum) {
+    float side[MU_IBL_BATCH], w[4][MU_IBL_BATCH];
     int at[MU_IBL_BATCH];
-    float w[4][MU_IBL_BATCH];
+    for (size_t i = 0; i < count; i++) side[i] = (float)squares[i]->side;
     for (size_t i = 0; i < count; i++) {
-        const float x = u[i] * side + 0.5f, y = v[i] * side + 0.5f, own = weight[i] * share;
+        const float x = u[i] * side[i] + 0.5f, y = v[i] * side[i] + 0.5f;
         const int column = (int)x, row = (int)y;
-        const float right = x - (float)column, down = y - (float)row, lower = own * down, upper = own - lower;
-        at[i] = 4 * (row * whole + column);
+        const float right = x - (float)column, down = y - (float)row, lower = weight[i] * down,
+                    upper = weight[i] - lower;
+        at[i] = 4 * (row * ((int)side[i] + 2) + column);
         w[1][i] = upper * right, w[0][i] = upper - w[1][i];
         w[3][i] = lower * right, w[2][i] = lower - w[3][i];
     }
     for (size_t i = 0; i < count; i++) {
-        const float *restrict a = s->texels + at[i], *restrict b = a + 4 * whole;
+        const float *restrict a = squares[i]->texels + at[i], *restrict b = a + 4 * (squares[i]->side + 2);
         for (int k = 0; k < 4; k++)
             sum[k] += (w[0][i] * a[k] + w[1][i] * a[4 + k]) + (w[2][i] * b[k] + w[3][i] * b[4 + k]);
     }
 }
 
+static void sum_several(const mu_ibl_globe *g, const mu_ibl_batch *b, const float *u, const float *v,
+                        float sum[4]) {
+    const mu_ibl_square *squares[2][MU_IBL_BATCH];
+    float near[MU_IBL_BATCH], far[MU_IBL_BATCH], farther = 0;
+    const int last = (int)g->levels - 1;
+    for (size_t i = 0; i < b->count; i++) {
+        const int low = (int)b->level[i];
+        squares[0][i] = &g->level[low], squares[1][i] = &g->level[low < last ? low + 1 : last];
+        far[i] = b->weight[i] * (b->level[i] - (float)low), near[i] = b->weight[i] - far[i];
+        farther += far[i];
+    }
+    sum_squares(b->count, squares[0], u, v, near, sum);
+    if (farther > 0) sum_squares(b->count, squares[1], u, v, far, sum);
+}
+
 void mu_ibl_globe_sum(const mu_ibl_globe *g, const mu_ibl_batch *b, float rgb[4]) {
     float u[MU_IBL_BATCH], v[MU_IBL_BATCH], sum[4] = {rgb[0], rgb[1], rgb[2], rgb[3]};
-    int alike = 1;
     for (size_t i = 0; i < b->count; i++) fold(b->x[i], b->y[i], b->z[i], &u[i], &v[i]);
-    for (size_t i = 1; i < b->count; i++) alike &= b->level[i] == b->level[0];
-    if (alike && b->count > 1) {
-        const int low = (int)b->level[0];
-        const float share = low + 1 < (int)g->levels ? b->level[0] - (float)low : 0;
-        sum_square(&g->level[low], b->count, u, v, b->weight, 1 - share, sum);
-        if (share > 0) sum_square(&g->level[low + 1], b->count, u, v, b->weight, share, sum);
-    } else {
+    if (b->count < SEVERAL)
         for (size_t i = 0; i < b->count; i++) trilinear(g, u[i], v[i], b->level[i], b->weight[i], sum);
-    }
+    else
+        sum_several(g, b, u, v, sum);
     for (int k = 0; k < 4; k++) rgb[k] = sum[k];
 }
 
@@ -159,8 +170,8 @@ void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl
                              mu_ibl_square *to) {
     for (size_t column = 0; column < to->side; column++) {
         float n[3], sum[4] = {0, 0, 0, 0};
-        mu_ibl_globe_direction(((float)column + 0.5f) / (float)to->side, ((float)row + 0.5f) / (float)to->side,
-                               n);
+        mu_ibl_globe_direction(((float)column + 0.5f) / (float)to->side,
+                               ((float)row + 0.5f) / (float)to->side, n);
         /* down the meridian and east; at the poles any */
         const float flat = hypot(n[0], n[1]);
         const float east[2] = {flat > 0 ? -n[1] / flat : 0, flat > 0 ? n[0] / flat : 1};

@@ -21,7 +21,8 @@ def program():
 
 
 class Page:
-    def __init__(self, address, width=1440, height=1100, arguments=()):
+    def __init__(self, address, width=1440, height=1100, arguments=(), before=None):
+        """`before`: a script that runs before the page's own."""
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         reading, self.out = os.pipe()
         self.into, writing = os.pipe()
@@ -41,6 +42,8 @@ class Page:
             self.call(f"{domain}.enable")
         self.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        if before:
+            self.call("Page.addScriptToEvaluateOnNewDocument", source=before)
         self.loaded = False
         self.call("Page.navigate", url=address)
         while not self.loaded:

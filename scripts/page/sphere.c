@@ -23,7 +23,7 @@
 /* The numbers of a view of it. */
 enum { SIZE, TECHNIQUE, TURN, EXPOSURE, LAMP_X, LAMP_Y, LAMP_Z, NUMBERS };
 /* After those of core/ibl. */
-enum { SAMPLED = MU_IBL_LOBE + 1, LAMP };
+enum { SAMPLED = MU_IBL_FILTERED + 1, LAMP };
 
 struct page_sphere {
     const page_material *material;
@@ -41,8 +41,16 @@ typedef struct spot {
 } spot;
 
 const char *page_technique_name(int technique) {
-    static const char *const names[] = {"split integral", "bent normal", "major axis",
-                                        "sampled",        "lamp",        NULL};
+    static const char *const names[] = {
+        [MU_IBL_SPLIT] = "split integral",
+        [MU_IBL_BENT_NORMAL] = "bent normal",
+        [MU_IBL_MAJOR_AXIS] = "major axis",
+        [MU_IBL_LOBE] = "whole lobe",
+        [MU_IBL_FILTERED] = "filtered importance",
+        [SAMPLED] = "sampled",
+        [LAMP] = "lamp",
+        [LAMP + 1] = NULL,
+    };
     return names[technique];
 }
 

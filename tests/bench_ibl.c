@@ -5,8 +5,8 @@
  *
  *     bench_ibl [--json] [--images] [--rounds N] [--samples N] [SCENE...]
  *
- * The scenes differ in "integrator" alone: geometry, light and tables are made of the first, and each scene's picture is made
- * with its own integrator in turn. A cost is processor time of one thread for the whole frame (camera rays, what they meet, shading,
+ * The scenes differ in "integrator" and "lights" alone: geometry and tables are made of the first, the light of the first of those that follow
+ * one another with the same, and each scene's picture is made with its own integrator in turn. A cost is processor time of one thread for the whole frame (camera rays, what they meet, shading,
  * the film's sums) over samples and pixels; the median of N rounds, in each of which every scene has its turn. "rays" is
  * the frame without shading: hits are left black. --images leaves SCENE.exr beside each. Without scenes: a sphere that fills most
  * of a studio, by every technique of `musurf render` that is not path, 16 reads; exit 1 if the major axis then takes more than
@@ -39,6 +39,7 @@ typedef struct entry {
     const char *file;
     mu_scene scene;
     double ns[MOST_ROUNDS], median;
+    double rays;  /* median of a frame without shading, under the same light */
     double reads; /* per hit */
 } entry;
 
@@ -120,8 +121,8 @@ static void write_image(const entry *e, const mu_film *film) {
     if (!mu_image_write_exr(file, film, &e->scene.film, &info, &error)) stop(error.text);
 }
 
-/* The median of a ray's frame; those of the entries are left in them. */
-static double measure(bench *b, mu_image_light *light, entry *entries, size_t count) {
+/* Of entries under one light. */
+static void measure(bench *b, mu_image_light *light, entry *entries, size_t count) {
     static double rays[MOST_ROUNDS];
     mu_film film = {0};
     for (uint32_t r = 0; r < b->rounds; r++) {
@@ -134,9 +135,29 @@ static double measure(bench *b, mu_image_light *light, entry *entries, size_t co
             if (b->images && !r) write_image(e, &film);
         }
     }
-    for (size_t k = 0; k < count; k++) entries[k].median = median(entries[k].ns, NULL, b->rounds);
+    for (size_t k = 0; k < count; k++)
+        entries[k].median = median(entries[k].ns, NULL, b->rounds), entries[k].rays = median(rays, NULL, b->rounds);
     mu_film_free(&film);
-    return median(rays, NULL, b->rounds);
+}
+
+static _Bool same_light(const mu_scene *a, const mu_scene *b) {
+    if (a->light_count != 1 || b->light_count != 1) stop("a scene for this has one light");
+    const mu_light *x = a->lights, *y = b->lights;
+    return x->kind == y->kind && x->rotation == y->rotation && !memcmp(x->scale, y->scale, sizeof x->scale) &&
+           (x->image && y->image ? !strcmp(x->image, y->image) : x->image == y->image);
+}
+
+static void measure_all(bench *b, mu_image_light *light, entry *entries, size_t count) {
+    for (size_t first = 0, last; first < count; first = last) {
+        mu_error error = {.text = ""};
+        mu_lights *lights = NULL;
+        for (last = first + 1; last < count && same_light(&entries[first].scene, &entries[last].scene);) last++;
+        if (first && (!(lights = mu_lights_build(&entries[first].scene, &error)) ||
+                      !mu_image_light_relight(light, b->tracer.lights = lights, mu_processors(), &error)))
+            stop(error.text);
+        measure(b, light, entries + first, last - first);
+        mu_lights_free(lights);
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------ scenes */
@@ -180,25 +201,25 @@ static const entry *of(const entry *entries, size_t count, mu_ibl_technique tech
     return NULL;
 }
 
-static void print_json(const bench *b, const entry *e, double rays) {
+static void print_json(const bench *b, const entry *e) {
     printf("{\"scene\": \"%s\", \"ns\": %.4f, \"shading_ns\": %.4f, \"rays_ns\": %.4f, \"reads\": %.6f, \"rounds\": [", e->file, e->median,
-           e->median - rays, rays, e->reads);
+           e->median - e->rays, e->rays, e->reads);
     for (uint32_t r = 0; r < b->rounds; r++) printf("%s%.4f", r ? ", " : "", e->ns[r]);
     puts("]}");
 }
 
 /* Exit code. Ratios are those of the same round. */
-static int report(const bench *b, const entry *entries, size_t count, double rays, _Bool judged) {
+static int report(const bench *b, const entry *entries, size_t count, _Bool judged) {
     const entry *const bent = of(entries, count, MU_IBL_BENT_NORMAL), *const axis = of(entries, count, MU_IBL_MAJOR_AXIS);
     if (!b->json)
         printf("image-based lighting, processor ns a pixel and sample, median of %u; rays and what they meet: %.1f\n%-24s%8s%10s%12s%8s\n",
-               b->rounds, rays, "", "frame", "shading", "bent = 1", "reads");
+               b->rounds, entries->rays, "", "frame", "shading", "bent = 1", "reads");
     for (size_t k = 0; k < count; k++) {
         const entry *const e = &entries[k];
         if (b->json)
-            print_json(b, e, rays);
+            print_json(b, e);
         else
-            printf("%-24s%8.1f%10.1f%12.2f%8.2f\n", e->file, e->median, e->median - rays, bent ? median(e->ns, bent->ns, b->rounds) : 0,
+            printf("%-24s%8.1f%10.1f%12.2f%8.2f\n", e->file, e->median, e->median - e->rays, bent ? median(e->ns, bent->ns, b->rounds) : 0,
                    e->reads);
     }
     if (!judged) return 0;
@@ -243,8 +264,8 @@ int main(int argc, char **argv) {
     mu_image_light *const light = mu_image_light_make(&b.tracer, mu_processors(), &error);
     if (!light) stop(error.text);
     b.tracer.image_light = light;
-    const double rays = measure(&b, light, entries, count);
-    const int code = report(&b, entries, count, rays, at >= argc);
+    measure_all(&b, light, entries, count);
+    const int code = report(&b, entries, count, at >= argc);
     mu_image_light_free(light);
     mu_lights_free(lights);
     mu_geometry_free(geometry);

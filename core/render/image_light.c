@@ -192,6 +192,11 @@ mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, m
     return NULL;
 }
 
+_Bool mu_image_light_relight(mu_image_light *light, const mu_lights *lights, uint32_t threads, mu_error *error) {
+    free(light->memory);
+    return (light->memory = mu_filtered_make(&light->globe, lights, threads, error)) != NULL;
+}
+
 void mu_image_light_free(mu_image_light *light) {
     if (!light) return;
     for (uint32_t m = 0; light->materials && m < light->count; m++) mu_albedo_table_free(&light->materials[m].albedo);

@@ -20,6 +20,8 @@ typedef struct mu_image_light mu_image_light;
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error);
 /* Another technique, of a light that was made: nothing is made anew. Not while others use it. */
 void mu_image_light_choose(mu_image_light *image_light, const mu_integrator_settings *settings);
+/* Other lights around the scene: filtered, tables stay. Not while others use it. After a failure it is only to be freed. */
+_Bool mu_image_light_relight(mu_image_light *image_light, const mu_lights *lights, uint32_t threads, mu_error *error);
 void mu_image_light_free(mu_image_light *image_light);
 
 /* [any] As mu_integrator_row, of tracer->image_light. */

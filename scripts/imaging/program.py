@@ -75,13 +75,13 @@ class Truth:
         return [a, b], inside & also
 
 
-def by_techniques(bench, scene, integrators, effort, folder, env=None):
-    """[{"ns", "shading_ns", "rays_ns", "reads", "rounds", "picture", "inside"}], a frame for each of "integrator"."""
+def by_techniques(bench, scenes, effort, folder, env=None):
+    """[{"ns", "shading_ns", "rays_ns", "reads", "rounds", "picture", "inside"}], a frame for each scene; they differ in integrator and lights."""
     folder.mkdir(parents=True, exist_ok=True)
     files = []
-    for k, integrator in enumerate(integrators):
+    for k, scene in enumerate(scenes):
         files.append(folder / f"{k:03d}.json")
-        files[-1].write_text(json.dumps({**scene, "integrator": integrator}))
+        files[-1].write_text(json.dumps(scene))
     said = call(bench, "--json", "--images", "--rounds", effort.rounds, "--samples", effort.samples, *files, env=env)
     found = []
     for line, file in zip(said.splitlines(), files, strict=True):

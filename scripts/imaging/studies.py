@@ -33,27 +33,31 @@ def spheres(musurf, bench, truth, effort, folder, progress, env=None):
     chosen, sweeps = techniques.all_of(musurf, effort), techniques.sweeps(effort)
     found = [{"integrator": i, "label": techniques.label(i), "flip": {}, "relative": {}} for i in chosen]
     swept = {key: [{"integrator": i, "label": techniques.label(i), "value": i[key], "flip": {}, "relative": {}} for i in some] for key, some in sweeps.items()}
-    noise, runs, pictures, shape = {"flip": {}, "relative": {}}, [], {}, (len(grid.rows), len(grid.columns))
+    noise, pictures, shape = {"flip": {}, "relative": {}}, {}, (len(grid.rows), len(grid.columns))
+    truths, jobs = {}, []
     for number, (name, light) in enumerate(lights):
-        truths = []
         for k in range(len(grid.cells)):
             progress.step(f"truth under {name}: sphere {k + 1} of {len(grid.cells)}", truth_weight(effort.cell ** 2, effort))
-            truths.append(truth.halves(grid.alone(k, light)))
-        off = [errors.noise(halves, inside) for halves, inside in truths]
+            truths.setdefault(name, []).append(truth.halves(grid.alone(k, light)))
+        off = [errors.noise(halves, inside) for halves, inside in truths[name]]
         for key in noise:
             noise[key][name] = np.reshape([o[key] for o in off], shape).tolist()
-        progress.step(f"techniques under {name}", technique_weight(len(grid.cells), effort))
         more = [] if number else [entry for entries in swept.values() for entry in entries]
-        run = program.by_techniques(bench, grid.sheet(light), [entry["integrator"] for entry in found + more], effort, folder / "work", env)
-        runs.append(run)
-        for entry, made in zip(found + more, run):
-            of = [errors.both((halves[0] + halves[1]) / 2, grid.of_sheet(made["picture"], k), inside & grid.of_sheet(made["inside"], k))
-                  for k, (halves, inside) in enumerate(truths)]
+        jobs.append((name, found + more, [scene.by(grid.sheet(light), entry["integrator"]) for entry in found + more]))
+    progress.step("techniques", technique_weight(len(grid.cells), len(lights), effort))
+    made = iter(program.by_techniques(bench, [one for *_, scenes in jobs for one in scenes], effort, folder / "work", env))
+    runs = []
+    for name, entries, scenes in jobs:
+        runs.append([next(made) for _ in scenes])
+        progress.step(f"errors under {name}", error_weight(len(grid.cells), len(scenes)))
+        for entry, run in zip(entries, runs[-1]):
+            of = [errors.both((halves[0] + halves[1]) / 2, grid.of_sheet(run["picture"], k), inside & grid.of_sheet(run["inside"], k))
+                  for k, (halves, inside) in enumerate(truths[name])]
             for key in ("flip", "relative"):
                 entry[key][name] = np.reshape([o[key] for o in of], shape).tolist()
-            pictures[name, entry["label"]] = made["picture"]
-        pictures[name, "truth"] = np.concatenate([np.concatenate([(truths[r * shape[1] + c][0][0] + truths[r * shape[1] + c][0][1]) / 2 for c in range(shape[1])], 1)
-                                                  for r in range(shape[0])], 0)
+            pictures[name, entry["label"]] = run["picture"]
+        means_of = [(a + b) / 2 for (a, b), _ in truths[name]]
+        pictures[name, "truth"] = np.concatenate([np.concatenate(means_of[r * shape[1]:(r + 1) * shape[1]], 1) for r in range(shape[0])], 0)
     costs(found, runs)
     for entry in [*found, *(entry for entries in swept.values() for entry in entries)]:
         for key in ("flip", "relative"):
@@ -78,9 +82,9 @@ def whole(musurf, bench, truth, effort, folder, progress, best=None, env=None):
         given = scene.under(given, {key: light[key] for key in light if key != "fallback"}, width, height)
         progress.step(f"{name}: truth", 1.6 * truth_weight(width * height, effort))
         halves, inside = truth.halves(given)
-        progress.step(f"{name}: techniques", technique_weight(1, effort))
+        progress.step(f"{name}: techniques", technique_weight(1, 1, effort))
         found = [{"integrator": i, "label": techniques.label(i)} for i in techniques.contenders(musurf, best)]
-        run = program.by_techniques(bench, given, [entry["integrator"] for entry in found], dataclasses.replace(effort, rounds=MORE * effort.rounds), folder / "work", env)
+        run = program.by_techniques(bench, [scene.by(given, entry["integrator"]) for entry in found], dataclasses.replace(effort, rounds=MORE * effort.rounds), folder / "work", env)
         mean = (halves[0] + halves[1]) / 2
         costs(found, [run])
         for entry, made in zip(found, run):
@@ -96,12 +100,16 @@ def truth_weight(pixels, effort):
     return 2 * (0.25 + 2e-6 * pixels * effort.truth)
 
 
-def technique_weight(materials, effort):
+def technique_weight(materials, lights, effort):
     """Tables of albedos, filtering, frames."""
-    return 3 + 1.5 * materials + 1e-6 * 20 * effort.samples * effort.rounds * materials * effort.cell ** 2
+    return 1.5 * materials + lights * (3 + 1e-6 * 30 * effort.samples * effort.rounds * materials * effort.cell ** 2)
+
+
+def error_weight(cells, pictures):
+    return 0.02 * cells * pictures
 
 
 def weight(effort):
-    count = len(effort.environments) * (len(effort.roughness) or 6) * (len(effort.anisotropy) or 5)
-    return (count * truth_weight(effort.cell ** 2, effort) + len(effort.environments) * technique_weight(count / len(effort.environments), effort)
-            + sum(1.6 * truth_weight(w * h, effort) + technique_weight(1, effort) for _, w, h in effort.scenes))
+    cells, lights = (len(effort.roughness) or 6) * (len(effort.anisotropy) or 5), len(effort.environments)
+    return (cells * lights * truth_weight(effort.cell ** 2, effort) + technique_weight(cells, lights, effort) + lights * error_weight(cells, 30)
+            + sum(1.6 * truth_weight(w * h, effort) + technique_weight(1, 1, effort) for _, w, h in effort.scenes))

@@ -8,6 +8,7 @@ from . import program, scene
 
 ONE_READ = ("split", "bent-normal")
 BASELINE, SEED, FILTERED = "bent-normal", "major-axis", "filtered"
+SQUARES = (4, 16, 64)  # what filtered sampling takes of the numbers of reads
 PUBLISHED = (*ONE_READ, SEED, FILTERED)  # every other technique is an improvement, or is to be one
 
 
@@ -20,7 +21,8 @@ def all_of(musurf, effort):
     """[integrator]: one for each technique and number of reads."""
     found = []
     for name in names(musurf):
-        found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in sorted({*effort.reads, efforts.SEED, efforts.FILTERED})]
+        reads = {efforts.FILTERED, *(n for n in effort.reads if name != FILTERED or n in SQUARES)}
+        found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in sorted(reads | {efforts.SEED})]
     return found
 
 

@@ -88,7 +88,9 @@ class Messages(unittest.TestCase):
         self.musurf("exports no musurf_plugin_v1", plugin=str(mitsuba_host.BUILD / "musurf_wavefront.so"))
         self.musurf("cannot be opened: No such file", file="/nowhere.json")
         broken = pathlib.Path(FOLDER.name, "broken.json")
-        for text, what in (("{", "is no JSON"), ('{"ndf": "ggx"}', "is no material"),
+        for text, what in (("{", "is no JSON"), ("[" * 100000, "is no JSON"),
+                           ('{"material": "musurf.microfacet", "alpha": 1' + 400 * "0" + "}", "alpha: inf is not a finite number"),
+                           ('{"material": "musurf.microfacet", "alpha": NaN}', "alpha: nan is not a finite number"), ('{"ndf": "ggx"}', "is no material"),
                            ('{"material": "musurf.microfacet", "alpha": [1, 2]}', "$.alpha: takes 1 number"),
                            ('{"material": "musurf.microfacet", "fresnel": {"schlik": 1}}', "$.fresnel.schlik: musurf.microfacet has no"),
                            ('{"material": "musurf.microfacet", "jacobian": {}}', "$.jacobian: is for musurf's own renderer"),

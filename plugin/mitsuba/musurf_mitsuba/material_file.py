@@ -27,10 +27,10 @@ def read(path):
     """The JSON object in the file."""
     try:
         with open(path, encoding="utf-8-sig") as file:
-            found = json.load(file, object_pairs_hook=unique)
+            found = json.load(file, object_pairs_hook=unique, parse_int=float)  # what is too large for a number is not finite then
     except OSError as why:
         raise FileError(f"{path}: cannot be opened: {why.strerror}") from None
-    except ValueError as why:
+    except (ValueError, RecursionError) as why:
         raise FileError(f"{path}: is no JSON: {why}") from None
     if not isinstance(found, dict) or not isinstance(found.get("material"), str):
         raise FileError(f"{path}: $: is no material: {{\"material\": \"musurf.microfacet\", ...}} is needed")

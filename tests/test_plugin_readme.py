@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+import exr
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = os.environ.get("BUILD", "build")
 SANITIZE = os.environ.get("SANITIZE", "").split()
@@ -54,7 +56,7 @@ class Readme(unittest.TestCase):
         return self.succeeds("pkg-config", "--cflags", "musurf").split()
 
     def test_the_host_as_printed(self):
-        (text,) = blocks("c")
+        text, _ = blocks("c")
         self.assertLessEqual(len(text.splitlines()), 40)
         (self.work / "host.c").write_text(text)
         self.succeeds("cc", "-std=c17", "-Wall", "-Wextra", "-Werror", *SANITIZE, "host.c", *self.flags(), "-ldl", "-o", "host")
@@ -68,6 +70,22 @@ class Readme(unittest.TestCase):
         missing = run("./host", self.plugins / "no.so", cwd=self.work)
         self.assertEqual((missing.returncode, missing.stderr.count("\n")), (2, 1))
         self.assertIn("no.so", missing.stderr)
+
+    @unittest.skipIf(SANITIZE, "a sanitized library needs its runtime in the program")
+    def test_the_renderer_as_a_library(self):
+        """Nothing is told of where plugins are: they are beside the library."""
+        _, text = blocks("c")
+        (self.work / "ball.c").write_text(text)
+        commands = next(block for block in blocks("sh") if "ball.c" in block)
+        said = self.succeeds("sh", "-c", commands)
+        match = re.fullmatch(r"([\d.]+) ([\d.]+) ([\d.]+), coverage 1\n", said)
+        self.assertTrue(match, said)
+        scene = json.loads(re.search(r"scene\[\] = (.*?);", text, re.S)[1].replace('"\n', "").replace('\\"', "\0").replace('"', "").replace("\0", '"'))
+        (self.work / "ball.json").write_text(json.dumps(scene))
+        self.succeeds(self.musurf, "render", "ball.json", "-o", "ball.exr", "--progress", "none")
+        middle = [exr.read(self.work / "ball.exr")[1][c][24, 32] for c in "RGB"]
+        for found, wanted in zip(match.groups(), middle):
+            self.assertAlmostEqual(float(found), float(wanted), delta=1e-3 * float(wanted))  # halves, of 11 bits
 
     def test_another_plugin_as_told(self):
         commands = [block for block in blocks("sh") if "export.map" in block]

@@ -4,8 +4,9 @@
  * here. */
 #include "core/render/image_read.h"
 
+#include "core/render/search.h"
+
 #include <dlfcn.h>
-#include <limits.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -21,35 +22,17 @@ typedef float *(*mu_channel_reader)(const char *file, const char *const *names, 
 typedef double *(*mu_raw_reader)(const char *file, const char *channel, int *width, int *height,
                                  char *message, size_t size);
 
-/* The first file of that name is taken; if it does not load, `why` says so and no other is tried in its
- * place. */
-static void *open_in(const char *folder, size_t length, char *why, size_t size) {
-    char path[PATH_MAX];
-    const int written = snprintf(path, sizeof path, "%.*s/%s", (int)length, folder, MODULE);
-    if (written < 0 || (size_t)written >= sizeof path || access(path, R_OK) != 0) return NULL;
-    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (!module) snprintf(why, size, "%s", dlerror());
-    return module;
-}
-
+/* The first file of that name is taken; if it does not load, `why` says so and no other is tried in its place. */
 static void *open_module(char *why, size_t size) {
-    const char *path = getenv("MUSURF_PLUGIN_PATH");
-    void *module = NULL;
-    while (path && *path && !module && !why[0]) {
-        const size_t length = strcspn(path, ":");
-        if (length) module = open_in(path, length, why, size);
-        path += length + (path[length] == ':');
+    char folder[MU_LONGEST_PATH], path[MU_LONGEST_PATH + sizeof MODULE];
+    for (size_t i = 0; mu_search_directory(i, folder, sizeof folder); i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, MODULE);
+        if (access(path, R_OK) != 0) continue;
+        void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+        if (!module) snprintf(why, size, "%s", dlerror());
+        return module;
     }
-    char program[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (module || why[0] || length <= 0) return module;
-    program[length] = 0;
-    char *slash = strrchr(program, '/');
-    if (!slash) return NULL;
-    module = open_in(program, (size_t)(slash - program), why, size);
-    if (module || why[0]) return module;
-    snprintf(slash, sizeof program - (size_t)(slash - program), "/../lib/musurf");
-    return open_in(program, strlen(program), why, size);
+    return NULL;
 }
 
 /* A function of the module, which is left open: OpenImageIO keeps threads of its own, which must not lose their code. */
@@ -59,7 +42,7 @@ static void *find(const char *file, const char *name, mu_error *error) {
     if (!module) {
         mu_fail(error, "%s: images need the module " MODULE ", which was %s%s", file,
                 why[0] ? "found but does not load: "
-                       : "not found in $MUSURF_PLUGIN_PATH, beside the program or in ../lib/musurf",
+                       : "not found in $MUSURF_PLUGIN_PATH, beside the program or library, or in ../lib/musurf",
                 why);
         return NULL;
     }

@@ -4,8 +4,7 @@
  * image_read.h: pictures from files, through the module musurf_oiio.so that holds OpenImageIO.
  *
  * Opening OpenImageIO costs some 400 ms and 128 MB, so the module is opened here, when the first picture is
- * read, and not linked. It is looked for in $MUSURF_PLUGIN_PATH, beside the program, and in ../lib/musurf
- * relative to it.
+ * read, and not linked. search.h says where it is looked for.
  */
 #ifndef MU_IMAGE_READ_H
 #define MU_IMAGE_READ_H

@@ -3,8 +3,8 @@
 /*
  * material.h: plugins, and materials made from JSON by a plugin's parameter table.
  *
- * "material": "vendor.name" names a type of vendor_material.so, looked for in $MUSURF_PLUGIN_PATH, beside the
- * program, and in ../lib/musurf relative to it. Everything else in the object is a parameter of that table, except
+ * "material": "vendor.name" names a type of vendor_material.so, looked for where search.h
+ * says. Everything else in the object is a parameter of that table, except
  * the keys that the renderer itself serves ("jacobian"). What may vary may have a source (source.h) instead of a value.
  * Warnings of a plugin go to stderr. {"file": name} stands for the material in that file (material_file.h).
  */

@@ -5,7 +5,8 @@
  *
  * The scene is that of `musurf render` (scene.schema.json); meshes and pictures are files that it names. Everything goes
  * on inside one call, on threads of its own; callbacks come on the thread that called. Nothing is printed, no signal is
- * caught, no state is kept between calls. Plugins are looked for in $MUSURF_PLUGIN_PATH.
+ * caught, no state is kept between calls. Plugins are looked for in $MUSURF_PLUGIN_PATH, then
+ * beside the shared library.
  */
 #ifndef MUSURF_RENDER_H
 #define MUSURF_RENDER_H

@@ -3,12 +3,12 @@
 /*
  * plugin.c: finds and opens shared objects of materials, each once and only when something names it.
  *
- * "vendor.name" is looked for in vendor_material.so: in the directories of $MUSURF_PLUGIN_PATH, beside the
- * running program, and in ../lib/musurf from there. The first file of that name is taken; if it cannot be
- * used that is an error, not a reason to look further: a broken plugin must not be replaced silently by
+ * "vendor.name" is looked for in vendor_material.so, where search.h says. The first file of that name is taken; if it
+ * cannot be used that is an error, not a reason to look further: a broken plugin must not be replaced silently by
  * another.
  */
 #include "core/render/plugin.h"
+#include "core/render/search.h"
 #include "core/render/text.h"
 
 #include <dlfcn.h>
@@ -55,40 +55,6 @@ const char *mu_plugins_opened(const mu_plugins *plugins, size_t index) {
     return o ? o->file : NULL;
 }
 
-/* Takes the last part of a path away, and the slash before it. */
-static void cut_last(char *path) {
-    char *slash = strrchr(path, '/');
-    if (slash) *slash = '\0';
-}
-
-/* The directory of the running program; empty if the system does not tell. */
-static void program_directory(char *out, size_t size) {
-    const ssize_t length = readlink("/proc/self/exe", out, size - 1);
-    out[length > 0 ? length : 0] = '\0';
-    cut_last(out);
-}
-
-enum { LONGEST_PATH = 4096 };
-
-/* The index-th directory to look in, in order. False past the last. */
-static _Bool search_directory(size_t index, char *out, size_t size) {
-    const char *at = getenv("MUSURF_PLUGIN_PATH");
-    while (at && *at) {
-        const size_t length = strcspn(at, ":");
-        if (length > 0 && length < size && index-- == 0) {
-            memcpy(out, at, length);
-            out[length] = '\0';
-            return 1;
-        }
-        at += length + (at[length] == ':');
-    }
-    if (index > 1) return 0;
-    char program[LONGEST_PATH];
-    program_directory(program, sizeof program);
-    if (index == 1) cut_last(program);
-    return snprintf(out, size, index == 0 ? "%s" : "%s/lib/musurf", program) < (int)size;
-}
-
 /* A vendor becomes part of a file name, so it holds letters, digits, - and _ only. */
 static _Bool is_vendor(const char *text, size_t length) {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -96,8 +62,8 @@ static _Bool is_vendor(const char *text, size_t length) {
 }
 
 static char *find_file(const char *vendor, mu_error *error) {
-    char directory[LONGEST_PATH], file[LONGEST_PATH + 128], tried[512] = "";
-    for (size_t i = 0; search_directory(i, directory, sizeof directory); i++) {
+    char directory[MU_LONGEST_PATH], file[MU_LONGEST_PATH + 128], tried[512] = "";
+    for (size_t i = 0; mu_search_directory(i, directory, sizeof directory); i++) {
         snprintf(file, sizeof file, "%s/%s_material.so", directory, vendor);
         if (access(file, F_OK) == 0) return strdup(file);
         if (tried[0]) mu_append(tried, sizeof tried, ", ");

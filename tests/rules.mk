@@ -20,7 +20,8 @@ bench: all $(BENCHMARKS)
 	@failed=0; for program in $(BENCHMARKS); do BUILD=$(BUILD) $$program || failed=1; done; \
 	BUILD=$(BUILD) $(PYTHON) tests/bench_rays.py || failed=1; \
 	BUILD=$(BUILD) $(PYTHON) tests/bench_tracers.py || failed=1; \
-	BUILD=$(BUILD) $(PYTHON) tests/bench_mitsuba.py || failed=1; exit $$failed
+	BUILD=$(BUILD) $(PYTHON) tests/bench_mitsuba.py || failed=1; \
+	BUILD=$(BUILD) $(PYTHON) tests/bench_page.py || failed=1; exit $$failed
 
 # A million random lines to `musurf ibl axis`; `make test` asks 20 000.
 fuzz: deps

@@ -12,7 +12,8 @@ import pathlib
 import re
 
 IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([\w.]+)";\n', re.M)
-TOP = re.compile(r"^(?:export )?(?:async )?(?:const|let|class|function) (?:\{([^}]*)\}|(\w+))", re.M)
+TOP = re.compile(r"^(?:async )?(?:const|let|class|function) (.*)", re.M)
+DECLARED = re.compile(r"(?:^|, )(\w+)(?=$| =|;|\(| \{| extends)")
 
 
 def ordered(folder, entry, before=()):
@@ -35,8 +36,8 @@ def script(folder, entry):
                 if not re.search(rf"^export (?:async )?\w+ {name.strip()}\b", (folder / source).read_text(), re.M):
                     raise SystemExit(f"{file} imports {name.strip()}, which {source} does not export")
         own = re.sub(r"^export ", "", IMPORT.sub("", own), flags=re.M)
-        for _, name in TOP.findall(own):
-            if name and names.setdefault(name, file) != file:
+        for name in (name for line in TOP.findall(own) for name in DECLARED.findall(line)):
+            if names.setdefault(name, file) != file:
                 raise SystemExit(f"{name} is in {names[name]} and in {file}")
         text += own
     if "</script" in text:

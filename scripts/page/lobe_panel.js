@@ -14,13 +14,12 @@ function niceAbove(x) {
 }
 
 export class LobePanel {
-    constructor(core, space, canvas, svg, size) {
-        Object.assign(this, { core, space, canvas, svg, size });
-        canvas.width = canvas.height = size;
+    // `largest`: the most pixels of a side.
+    constructor(core, space, canvas, svg, largest) {
+        Object.assign(this, { core, space, canvas, svg });
         this.context = canvas.getContext("2d");
-        this.image = new ImageData(size, size);
-        this.work = core.malloc(4 * size * size);
-        this.pixels = core.malloc(4 * size * size);
+        this.work = core.malloc(4 * largest * largest);
+        this.pixels = core.malloc(4 * largest * largest);
         this.points = core.malloc(16 * 64 * DISC);
         svgElement("path", { class: "cross", d: "M-1 0H1M0 -1V1" }, svg);
         if (space !== SLOPES) svgElement("circle", { class: "horizon", r: 1 / DISC_REACH }, svg);
@@ -41,18 +40,22 @@ export class LobePanel {
         return points;
     }
 
-    drawDensity(ink) {
-        const { core, size } = this;
+    drawDensity(size, ink) {
+        const { core } = this;
+        if (this.image?.width !== size) {
+            this.image = new ImageData(size, size);
+            this.canvas.width = this.canvas.height = size;
+        }
         this.largest = core.page_density(this.material, this.query, this.space, this.reach, size, ink, this.work, this.pixels);
         this.image.data.set(new Uint8ClampedArray(core.memory.buffer, this.pixels, 4 * size * size));
         this.context.putImageData(this.image, 0, 0);
     }
 
-    show(material, query, sigma, k, ink) {
+    show(material, query, sigma, k, size, ink) {
         Object.assign(this, { material, query });
         const widest = k * Math.max(...sigma);
         this.reach = this.space === SLOPES ? niceAbove(Math.max(1.7 * widest, 1e-9)) : DISC_REACH;
-        this.drawDensity(ink);
+        this.drawDensity(size, ink);
         for (const [name, [curve, count]] of Object.entries(curves))
             this.lines[name].setAttribute("d", "M" + this.pointsOf(curve, count).map((p) => p.join(" ")).join("L"));
         this.pointsOf(POINTS, 0).forEach(([x, y], i) => (this.dots[i].setAttribute("cx", x), this.dots[i].setAttribute("cy", y)));

@@ -14,7 +14,8 @@ import { defaults, presetState, presets, stateOfText, textOfState } from "./stat
 import { Team } from "./team.js";
 
 const byId = (id) => document.getElementById(id);
-const PANEL = 160, SPHERE = 0.88; // pixels of a panel; the sphere's radius in its picture
+const PANEL = { moving: 112, still: 240 }, REST = 150; // pixels of a panel, and after how many ms it is at rest
+const SPHERE = 0.88; // radius in its picture
 
 // The color of densities, as bytes r, g, b.
 function inkOfTheme() {
@@ -32,7 +33,7 @@ class Page {
         this.controls = new Controls(document, choices, (part) => this.change(part));
         this.map = new MapPanel(byId("map"), (M) => this.change({ M }));
         this.panels = ["slopes", "normals", "reflected"].map(
-            (name, space) => new LobePanel(core, space, byId(`${name}-picture`), byId(name), PANEL));
+            (name, space) => new LobePanel(core, space, byId(`${name}-picture`), byId(name), PANEL.still));
         this.numbers = new Numbers(core, byId("numbers"), { eval: byId("eval-line"), axis: byId("axis-line") });
         this.sphere = new SphereView(team, byId("sphere-picture"), byId("sphere-behind"), byId("status"), choices);
         this.addHandles();
@@ -122,6 +123,7 @@ class Page {
         this.map.show(state.M);
         this.state = state;
         if (!set) return; // the pictures stay those of the last material that is one
+        this.changed = performance.now();
         if (!this.asked) this.asked = requestAnimationFrame(() => this.show());
         this.sphere.show(state);
         clearTimeout(this.remembering);
@@ -147,8 +149,11 @@ class Page {
         this.asked = 0;
         const { state } = this, query = this.query.set(queryNumbers(state));
         const numbers = this.numbers.ask(this.material, query);
+        const moving = performance.now() - this.changed < REST, size = moving ? PANEL.moving : PANEL.still;
+        clearTimeout(this.settling);
+        if (moving) this.settling = setTimeout(() => this.show(), REST);
         this.ink ??= inkOfTheme();
-        for (const panel of this.panels) panel.show(this.material, query, numbers.slope_sigma, state.k, this.ink);
+        for (const panel of this.panels) panel.show(this.material, query, numbers.slope_sigma, state.k, size, this.ink);
         for (const [handle, key, place] of this.handles)
             handle.put(...place(directionOf(state[key])), `${state[key][0]}° from the normal, azimuth ${state[key][1]}°`);
         this.numbers.show(state, numbers);

@@ -17,12 +17,13 @@ typedef struct drawing {
     mu_ibl_settings_d settings;
     mu_ibl_axis_d axis;
     mu_ibl_space space;
-    double reach, *out;
+    const double *frame;
+    double *out;
 } drawing;
 
 static void put(drawing *d, double x, double y, double z) {
     const double length = hypot(hypot(x, y), z), m[3] = {x / length, y / length, z / length};
-    page_project_normal(d->space, d->reach, d->wo, m, d->out);
+    page_project_normal(d->space, d->frame, d->wo, m, d->out);
     d->out += 2;
 }
 
@@ -51,7 +52,7 @@ static void put_disc(drawing *d, const double m[3]) {
         const double phi = 2 * PI * i / DISC;
         double v[3];
         for (int k = 0; k < 3; k++) v[k] = cosine * w[k] + sine * (cos(phi) * a[k] + sin(phi) * b[k]);
-        page_project_direction(v, d->reach, d->out);
+        page_project_direction(v, d->frame, d->out);
     }
 }
 
@@ -63,10 +64,10 @@ static void put_points(drawing *d) {
     put(d, 0, 0, 1);
 }
 
-int page_curve_points(const page_material *m, const double *query, int space, double reach, int curve,
+int page_curve_points(const page_material *m, const double *query, int space, const double *frame, int curve,
                       int count, double *out) {
     drawing d = {.material = m, .wo = query + PAGE_WO, .settings = page_settings(query)};
-    d.space = (mu_ibl_space)space, d.reach = reach, d.out = out;
+    d.space = (mu_ibl_space)space, d.frame = frame, d.out = out;
     mu_ibl_axis_make_d(&m->lobe_exact, d.wo, &d.settings, &d.axis);
     if (curve == PAGE_POINTS) {
         put_points(&d);

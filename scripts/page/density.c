@@ -7,15 +7,15 @@
 #include "scripts/page/material.h"
 #include "scripts/page/panel.h"
 
-/* At a place of a panel. */
-static float at(const mu_closure_f *c, int above, mu_ibl_space space, double reach, double x, double y) {
+/* At a place of the panel's plane. */
+static float at(const mu_closure_f *c, int above, mu_ibl_space space, double x, double y) {
     double w[3];
     if (space == MU_IBL_SLOPES) {
-        const double sx = x * reach, sy = y * reach, z = 1 / sqrt(1 + sx * sx + sy * sy);
-        const float m[3] = {(float)(-sx * z), (float)(-sy * z), (float)z};
+        const double z = 1 / sqrt(1 + x * x + y * y);
+        const float m[3] = {(float)(-x * z), (float)(-y * z), (float)z};
         return mu_normal_f(c, m).D * (m[2] * m[2]) * (m[2] * m[2]);
     }
-    if (!page_unproject(x, y, reach, w)) return 0;
+    if (!page_unproject(x, y, w)) return 0;
     const float v[3] = {(float)w[0], (float)w[1], (float)w[2]};
     if (space == MU_IBL_NORMALS) return mu_normal_f(c, v).D * v[2];
     if (!above) return 0;
@@ -24,7 +24,7 @@ static float at(const mu_closure_f *c, int above, mu_ibl_space space, double rea
     return value.f[1] * v[2];
 }
 
-double page_density(const page_material *m, const double *query, int space, double reach, int size,
+double page_density(const page_material *m, const double *query, int space, const double *frame, int size,
                     unsigned ink, float *work, unsigned *rgba) {
     const float wo[3] = {(float)query[0], (float)query[1], (float)query[2]};
     mu_closure_f c;
@@ -32,8 +32,9 @@ double page_density(const page_material *m, const double *query, int space, doub
     const int above = mu_bind_f(m->shaded, wo, NULL, &c);
     for (int row = 0; row < size; row++)
         for (int column = 0; column < size; column++) {
-            const float d = at(&c, above, (mu_ibl_space)space, reach, (2 * column + 1.0) / size - 1,
-                               1 - (2 * row + 1.0) / size);
+            const double x = (2 * column + 1.0) / size - 1, y = 1 - (2 * row + 1.0) / size;
+            const float d = at(&c, above, (mu_ibl_space)space, frame[PAGE_X] + frame[PAGE_REACH] * x,
+                               frame[PAGE_Y] + frame[PAGE_REACH] * y);
             work[row * size + column] = d;
             if (d > most) most = d;
         }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 The musurf authors
 // lobe_panel.js: one of the three panels of panel.h: the material's lobe as a picture, over it region, axis, samples; and its handles.
+import { Doubles } from "./core.js";
+import { discOf } from "./direction.js";
 import { svgElement } from "./handle.js";
 
-const curves = { boundary: [0, 97], whole: [1, 25], clamped: [2, 25] };
-const POINTS = 3, SAMPLED = 4, DISCS = 5, DISC = 32, SLOPES = 0, REFLECTED = 2;
-export const DISC_REACH = 1.1;
+const BOUNDARY = 0;
+const curves = { boundary: [BOUNDARY, 97], whole: [1, 25], clamped: [2, 25] };
+const POINTS = 3, SAMPLED = 4, DISCS = 5, DISC = 32, SLOPES = 0, NORMALS = 1, REFLECTED = 2;
+const WHOLE = [1.1, 0, 0]; // reach and middle of what is shown: the hemisphere
 
 // 1, 2 or 5 times a power of ten, at least x.
 function niceAbove(x) {
@@ -21,8 +24,10 @@ export class LobePanel {
         this.work = core.malloc(4 * largest * largest);
         this.pixels = core.malloc(4 * largest * largest);
         this.points = core.malloc(16 * 64 * DISC);
-        svgElement("path", { class: "cross", d: "M-1 0H1M0 -1V1" }, svg);
-        if (space !== SLOPES) svgElement("circle", { class: "horizon", r: 1 / DISC_REACH }, svg);
+        this.cross = svgElement("path", { class: "cross" }, svg);
+        if (space !== SLOPES) this.horizon = svgElement("circle", { class: "horizon" }, svg);
+        this.frame = WHOLE;
+        this.framePlace = new Doubles(core, 3);
         this.discs = svgElement("path", { class: "discs" }, svg);
         this.lines = Object.fromEntries(Object.keys(curves).map((name) => [name, svgElement("path", { class: name }, svg)]));
         this.samples = svgElement("path", { class: "samples" }, svg);
@@ -32,7 +37,7 @@ export class LobePanel {
     }
 
     pointsOf(curve, count) {
-        const found = this.core.page_curve_points(this.material, this.query, this.space, this.reach, curve, count, this.points);
+        const found = this.core.page_curve_points(this.material, this.query, this.space, this.framePlace.set(this.frame), curve, count, this.points);
         const flat = new Float64Array(this.core.memory.buffer, this.points, 2 * found), points = [];
         // what is far out, or at no place, is drawn far out
         const held = (x) => (Math.abs(x) < 99 ? Math.round(x * 1e4) / 1e4 : x > 0 ? 99 : x < 0 ? -99 : 0);
@@ -46,15 +51,45 @@ export class LobePanel {
             this.image = new ImageData(size, size);
             this.canvas.width = this.canvas.height = size;
         }
-        this.largest = core.page_density(this.material, this.query, this.space, this.reach, size, ink, this.work, this.pixels);
+        this.largest = core.page_density(this.material, this.query, this.space, this.framePlace.set(this.frame), size, ink, this.work, this.pixels);
         this.image.data.set(new Uint8ClampedArray(core.memory.buffer, this.pixels, 4 * size * size));
         this.context.putImageData(this.image, 0, 0);
     }
 
-    show(material, query, sigma, k, size, ink) {
+    // What to show: of slopes so much that the region fills a half of the panel; of directions all or, close up, as of slopes.
+    frameFor(state, sigma, wo) {
+        if (this.space === SLOPES) return [niceAbove(Math.max(1.7 * state.k * Math.max(...sigma), 1e-9)), 0, 0];
+        if (state.panels !== "close up") return WHOLE;
+        const middle = this.space === NORMALS ? [0, 0] : discOf([-wo[0], -wo[1], wo[2]]);
+        this.frame = [1, ...middle];
+        const widest = Math.max(...this.pointsOf(BOUNDARY, 33).map((p) => Math.hypot(...p)));
+        return widest < 0.4 ? [niceAbove(Math.max(1.7 * widest, 1e-9)), ...middle] : WHOLE;
+    }
+
+    // A place of the panel's plane in the panel, and back.
+    inPanel([x, y]) {
+        const [reach, middleX, middleY] = this.frame;
+        return [(x - middleX) / reach, (y - middleY) / reach];
+    }
+    inPlane(x, y) {
+        const [reach, middleX, middleY] = this.frame;
+        return [middleX + reach * x, middleY + reach * y];
+    }
+
+    drawFrame() {
+        const [x, y] = this.inPanel([0, 0]).map((c) => Math.round(c * 1e4) / 1e4), reach = this.frame[0];
+        this.cross.setAttribute("d", `M-1 ${-y}H1M${x} -1V1`);
+        this.scale.textContent = this.frame === WHOLE ? "" : `±${Number(reach.toPrecision(3))}`;
+        if (!this.horizon) return;
+        this.horizon.setAttribute("cx", x);
+        this.horizon.setAttribute("cy", -y);
+        this.horizon.setAttribute("r", 1 / reach);
+    }
+
+    show(material, query, state, sigma, wo, size, ink) {
         Object.assign(this, { material, query });
-        const widest = k * Math.max(...sigma);
-        this.reach = this.space === SLOPES ? niceAbove(Math.max(1.7 * widest, 1e-9)) : DISC_REACH;
+        this.frame = this.frameFor(state, sigma, wo);
+        this.drawFrame();
         this.drawDensity(size, ink);
         for (const [name, [curve, count]] of Object.entries(curves))
             this.lines[name].setAttribute("d", "M" + this.pointsOf(curve, count).map((p) => p.join(" ")).join("L"));
@@ -66,6 +101,5 @@ export class LobePanel {
             points.forEach((p, i) => (path += `${i % DISC ? "L" : (i ? "Z" : "") + "M"}${p.join(" ")}`));
             this.discs.setAttribute("d", path + "Z");
         }
-        this.scale.textContent = this.space === SLOPES ? `±${Number(this.reach.toPrecision(3))}` : "";
     }
 }

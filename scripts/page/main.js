@@ -5,7 +5,7 @@ import { Doubles, bytesOfBase64, loadCore, namesOf } from "./core.js";
 import { Controls } from "./controls.js";
 import { anglesOf, directionOf, directionOfDisc, directionOfSpot, discOf, spotOf } from "./direction.js";
 import { Handle } from "./handle.js";
-import { DISC_REACH, LobePanel } from "./lobe_panel.js";
+import { LobePanel } from "./lobe_panel.js";
 import { MapPanel } from "./map_panel.js";
 import { Numbers } from "./numbers.js";
 import { materialNumbers, queryNumbers } from "./question.js";
@@ -53,16 +53,14 @@ class Page {
                 this.change({ [key]: [Math.min(Math.max(theta + up, 0), 89.9), (phi - right + 540) % 360 - 180] });
             },
         });
-        const disc = (x, y) => directionOfDisc(x * DISC_REACH, y * DISC_REACH);
+        const inDisc = (panel) => [(x, y) => directionOfDisc(...panel.inPlane(x, y)), (w) => panel.inPanel(discOf(w))];
+        const [, normals, reflected] = this.panels.map(inDisc);
+        const onSphere = [(x, y) => directionOfSpot(x / SPHERE, y / SPHERE), (w) => spotOf(w).map((c) => c * SPHERE)];
         const view = "direction toward the viewer: up and down its angle from the normal, left and right its azimuth";
         const light = "direction toward the light: up and down its angle from the normal, left and right its azimuth";
-        this.handles = [
-            [add(byId("normals"), "wo", "view", view, disc), "view", (w) => discOf(w).map((c) => c / DISC_REACH)],
-            [add(byId("reflected"), "wo", "view", view, disc), "view", (w) => discOf(w).map((c) => c / DISC_REACH)],
-            [add(byId("reflected"), "wi", "light", light, disc), "light", (w) => discOf(w).map((c) => c / DISC_REACH)],
-            [add(byId("sphere"), "wo", "view", "place on the sphere that is looked at; " + view,
-                 (x, y) => directionOfSpot(x / SPHERE, y / SPHERE)), "view", (w) => spotOf(w).map((c) => c * SPHERE)],
-        ];
+        const all = [["normals", "wo", "view", view, normals], ["reflected", "wo", "view", view, reflected],
+                     ["reflected", "wi", "light", light, reflected], ["sphere", "wo", "view", "place on the sphere that is looked at; " + view, onSphere]];
+        this.handles = all.map(([id, name, key, label, [directionAt, placeOf]]) => [add(byId(id), name, key, label, directionAt), key, placeOf]);
     }
 
     addButtons() {
@@ -153,7 +151,7 @@ class Page {
         clearTimeout(this.settling);
         if (moving) this.settling = setTimeout(() => this.show(), REST);
         this.ink ??= inkOfTheme();
-        for (const panel of this.panels) panel.show(this.material, query, numbers.slope_sigma, state.k, size, this.ink);
+        for (const panel of this.panels) panel.show(this.material, query, state, numbers.slope_sigma, directionOf(state.view), size, this.ink);
         for (const [handle, key, place] of this.handles)
             handle.put(...place(directionOf(state[key])), `${state[key][0]}° from the normal, azimuth ${state[key][1]}°`);
         this.numbers.show(state, numbers);
@@ -173,7 +171,7 @@ async function begin() {
             metal: ["none", ...namesOf(core, (i) => core.page_choice(2, i))],
             technique: namesOf(core, core.page_technique_name),
             surroundings: namesOf(core, core.page_surroundings_name),
-            appendix_c: ["symmetric", "printed"], size: ["adaptive", "256", "512", "768"],
+            appendix_c: ["symmetric", "printed"], size: ["adaptive", "256", "512", "768"], panels: ["hemisphere", "close up"],
         };
         const threads = Math.min(Math.max(navigator.hardwareConcurrency || 2, 1), 4);
         const team = await Team.make(byId("worker").textContent, bytes, threads);

@@ -31,10 +31,10 @@ const char *PAGE_EXPORT(page_number_names)(void);
 void PAGE_EXPORT(page_numbers)(const page_material *material, const double *query, double *out);
 void PAGE_EXPORT(page_samples)(const page_material *material, const double *query, double *out);
 
-/* density.c: size x size pixels, row by row from the top; r, g, b are `ink`'s, opacity the root of the density over the largest,
+/* density.c, `frame`: panel.h: size x size pixels, row by row from the top; r, g, b are `ink`'s, opacity the root of the density over the largest,
  * which is returned. `work`: as many floats. */
-double PAGE_EXPORT(page_density)(const page_material *material, const double *query, int space, double reach,
-                                 int size, unsigned ink, float *work, unsigned *rgba);
+double PAGE_EXPORT(page_density)(const page_material *material, const double *query, int space,
+                                 const double *frame, int size, unsigned ink, float *work, unsigned *rgba);
 
 /* curves.c: what is drawn over it, x and y of points; of a line `count` of them. Returns how many there are. */
 typedef enum page_curve {
@@ -46,7 +46,7 @@ typedef enum page_curve {
     PAGE_DISCS     /* 32 each: directions a chord of the radius away; among reflected directions alone */
 } page_curve;
 int PAGE_EXPORT(page_curve_points)(const page_material *material, const double *query, int space,
-                                   double reach, int curve, int count, double *out);
+                                   const double *frame, int curve, int count, double *out);
 
 /* surroundings.c: what lights the sphere; its sharpest square has `side` texels, a power of two from 64 on, to a side. NULL without memory. */
 typedef struct page_surroundings page_surroundings;

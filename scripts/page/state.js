@@ -7,7 +7,7 @@ export const defaults = Object.freeze({
     ndf: "gtr", roughness: 0.4, gamma: 2, exponent: 20, M: [1, 2, 0, 1], masking: "height_correlated", metal: "Ag",
     view: [50, -155], light: [46, 20],
     N: 8, k: 1, beta: 2.3, appendix_c: "symmetric",
-    technique: "major axis", surroundings: "studio", turn: 0, exposure: 1, size: "adaptive",
+    technique: "major axis", surroundings: "studio", turn: 0, exposure: 1, size: "adaptive", panels: "hemisphere",
 });
 
 export const ranges = Object.freeze({
@@ -15,7 +15,7 @@ export const ranges = Object.freeze({
     "view.0": [0, 89.9], "view.1": [-180, 360], "light.0": [0, 89.9], "light.1": [-180, 360],
 });
 
-const plate = { ndf: "gtr", roughness: 0.11, gamma: 1.7, metal: "Ag" }; // alpha 0.0121
+const plate = { ndf: "gtr", roughness: 0.11, gamma: 1.7, metal: "Ag", panels: "close up" }; // alpha 0.0121
 export const presets = Object.freeze({
     "Skewed, rough": {},
     "Figure 1: plate": { ...plate, M: [1, 0, 0, 1] },

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# SPDX-FileCopyrightText: 2026 The musurf authors
+"""The page's sphere: against `musurf render`, in even light, while the light turns; and the page in browsers that lack something."""
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+import chromium
+import exr
+import page_host
+from command import BUILD, musurf
+from page_host import CASES, PAGE, READY, material_of
+
+
+class Sphere(page_host.Worked):
+    def sphere(self, case, technique, around="studio", passes=1, size=64):
+        """Radiance of the page's sphere in surroundings turned by 90 degrees, as its workers compute it."""
+        self.put_all({**case, "N": 8, "k": 1, "beta": 2.3, "appendix_c": "symmetric"})
+        flat = self.page.run(f"""(() => {{
+            const {{ core, material, query, choices }} = musurf, place = core.malloc(8 * 7), size = {size}, passes = {passes};
+            const technique = choices.technique.indexOf({technique!r}), sampled = {technique!r} === "sampled";
+            globalThis.made ??= {{}};
+            const light = made[{around!r}] ??= core.page_surroundings_new(choices.surroundings.indexOf({around!r}), 512);
+            new Float64Array(core.memory.buffer, place, 7).set([size, technique, {math.radians(90)}, 1, 0, 0, 1]);
+            const sphere = core.page_sphere_new(), rows = core.malloc(24 * size), sums = core.malloc(24 * size), seen = [];
+            core.page_sphere_set(sphere, material, light, query.place, place, 4096);
+            for (let row = 0; row < size / 2; row++) {{
+                new Uint8Array(core.memory.buffer, sums, 24 * size).fill(0);
+                for (let pass = 0; pass < passes; pass++) core.page_sphere_rows(sphere, row, pass, sampled ? sums : 0, rows, 0);
+                const both = [...new Float32Array(core.memory.buffer, rows, 6 * size)];
+                seen[row] = both.slice(0, 3 * size), seen[size - 1 - row] = both.slice(3 * size);
+            }}
+            return seen.flat();
+        }})()""")
+        return np.array(flat).reshape(size, size, 3)
+
+    def test_the_sphere_is_that_of_the_renderer(self):
+        """`musurf render` of such a sphere, camera and studio: the same reads in the same filtered light. What differs is the table of
+        albedos, of 24 x 10 nodes here: linear between them, (1/23)² / 8 of a second derivative of 10 or so, 2.4e-3, and around
+        (10°)² / 8 of that of a sine of twice the angle and a tenth's height, 1.5e-3; and 4096 samples, some 2e-3: 1e-2 in all where the cosine is above 0.3.
+        A place in a pixel differs by 1e-3 of it at most. (Of samplers that reject more the renderer's own table is noisier.) The transposed M, and a light
+        turned the other way, are seen at once."""
+        for case, technique, name in (({**CASES[2], "roughness": 0.3}, "major axis", "major-axis"),
+                                      ({**CASES[2], "roughness": 0.4, "M": [1, 2, 0, 1]}, "bent normal", "bent-normal")):
+            case = {**case, "metal": "none"}
+            ours = self.sphere(case, technique)
+            y, x = (np.mgrid[0:64, 0:64] + 0.5 - 32) / 32 / 0.88
+            inside = x * x + y * y < 1 - 0.3**2
+            with tempfile.TemporaryDirectory() as folder:
+                def off(material, rotation):
+                    scene = {"camera": {"type": "orthographic", "position": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "height": 2 / 0.88},
+                             "film": {"width": 64, "height": 64, "pixels": "float", "filter": "box", "radius": 0.001},
+                             "integrator": {"depth": 1, "samples": 1, "reads": 8}, "objects": [{"shape": "sphere", "radius": 1, "material": material}],
+                             "lights": [{"type": "studio", "rotation": rotation}]}
+                    file, out = pathlib.Path(folder, "scene.json"), pathlib.Path(folder, "out.exr")
+                    file.write_text(json.dumps(scene))
+                    done = musurf("render", file, "-o", out, "--integrator", name, "--quiet")
+                    self.assertEqual(done.returncode, 0, done.err)
+                    channels = exr.read(out)[1]
+                    theirs = np.stack([channels[c] for c in "RGB"], -1).astype(float)
+                    return (np.abs(ours - theirs) / theirs)[inside].max()
+                a, c, b, d = case["M"]
+                worst = off(material_of(case), 90)
+                print(f"{name} of {case['ndf']}: at most {worst:.1e} from musurf render")
+                self.assertLess(worst, 1e-2)
+                if name == "major-axis":
+                    self.assertGreater(off(material_of({**case, "M": [a, b, c, d]}), 90), 0.1)
+                    self.assertGreater(off(material_of(case), -90), 0.1)
+
+    def test_techniques_agree_in_even_light(self):
+        """Radiance 0.8 from everywhere comes back 0.8 times the albedo, by whatever reads: bit by bit but for sums of weights. Sampled 256 times
+        a pixel it is the same to noise: weights are between 0 and 1, so that the mean over 1800 pixels, of 460 000 samples, deviates by
+        0.5 / 680 at most, 7e-4; the table by 1e-2 (above), in a mean a fifth: 5e-3 in all."""
+        case = {**CASES[0], "metal": "none"}
+        y, x = (np.mgrid[0:64, 0:64] + 0.5 - 32) / 32 / 0.88
+        inside = x * x + y * y < 1 - 0.3**2
+        axis = self.sphere(case, "major axis", "even")[inside]
+        for technique in ("split integral", "bent normal", "whole lobe", "filtered importance"):
+            self.assertLess(np.abs(self.sphere(case, technique, "even")[inside] - axis).max(), 1e-5)
+        self.assertTrue((axis > 0.2).all() and (axis < 0.8).all())
+        sampled = self.sphere(case, "sampled", "even", 256)[inside]
+        self.assertLess(abs(sampled.mean() / axis.mean() - 1), 5e-3)
+        self.assertGreater(np.abs(sampled - axis).max(), 1e-3)  # it is another estimate
+
+    def test_frames_go_on_while_the_light_turns(self):
+        before = self.page.run("Number(document.getElementById('status').dataset.frames)")
+        pixels = """(() => {
+            const canvas = Object.assign(document.createElement("canvas"), { width: 64, height: 64 }), sphere = document.getElementById("sphere-picture");
+            const context = canvas.getContext("2d", { willReadFrequently: true });
+            context.drawImage(sphere, 0, 0, sphere.width, sphere.height, 0, 0, 64, 64);
+            return [...context.getImageData(0, 0, 64, 64).data].join();
+        })()"""
+        first = self.page.run(pixels)
+        self.page.run("document.getElementById('play').click()")
+        self.page.until(f"Number(document.getElementById('status').dataset.frames) > {before} + 5")
+        self.page.run("document.getElementById('play').click()")
+        self.page.until("!musurf.sphere.busy && !musurf.sphere.dirty")
+        self.assertNotEqual(self.page.run(pixels), first)
+        self.page.picture(BUILD / "page.png")
+        self.assertEqual(self.page.run("document.documentElement.dataset.ready"), "2" if self.page.run("navigator.hardwareConcurrency") == 2 else
+                         str(min(self.page.run("navigator.hardwareConcurrency"), 4)))
+
+
+class Without(unittest.TestCase):
+    """Browsers that lack something."""
+
+    def test_without_workers_it_draws_all_the_same(self):
+        with chromium.Page(PAGE.as_uri() + "#N=3&size=256", before="delete globalThis.Worker") as page:
+            page.until(READY)
+            self.assertEqual(page.run("document.documentElement.dataset.ready"), "0")
+            self.assertEqual(page.run("document.getElementById('sphere-picture').width"), 256)
+            self.assertEqual(page.complaints, [])
+
+    def test_without_web_assembly_it_says_so(self):
+        with chromium.Page(PAGE.as_uri(), before="delete globalThis.WebAssembly") as page:
+            page.until("!document.getElementById('failure').hidden")
+            self.assertIn("this browser has no WebAssembly", page.run("document.getElementById('failure').textContent"))
+
+
+if __name__ == "__main__":
+    page_host.made()
+    unittest.main()

@@ -141,6 +141,16 @@ class Host(unittest.TestCase):
         only.type_mask = int(mi.BSDFFlags.GlossyTransmission)
         self.assertTrue(np.all(np.array(bsdf.eval(only, hits(wo), vector(wi))) == 0))
 
+    def test_no_hits_and_sizes_that_do_not_go_together(self):
+        bsdf, context, one = load(**SKEW), mi.BSDFContext(), directions(1, 26)
+        for wo, wi in ((directions(0, 26), one), (directions(0, 26), directions(0, 27))):
+            f, pdf = bsdf.eval_pdf(context, hits(wo), vector(wi))
+            bs, weight = bsdf.sample(context, hits(wo), mi.Float(0.5), mi.Point2f(0.5, 0.5))
+            self.assertEqual([dr.width(x) for x in (f, pdf, bs, weight)], [0] * 4)
+        with self.assertRaisesRegex(RuntimeError, "incompatible sizes: .*3.*5"):
+            bsdf.eval(context, hits(directions(5, 26)), vector(directions(3, 27)))
+        self.assertEqual(dr.width(bsdf.eval(context, hits(one), vector(directions(3, 27)))), 3)
+
     def test_threads_give_the_bits_of_one(self):
         from musurf_mitsuba import wavefront
         wo, wi, bsdf, before = directions(50000, 8), directions(50000, 9), load(**SKEW), wavefront.THREADS

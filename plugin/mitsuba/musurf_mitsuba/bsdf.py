@@ -181,6 +181,8 @@ def make(mi):
             view, slots, mode, lobes = self.prepare(ctx, si, active)
             u = [sample2.x, sample2.y, sample1]
             found, lobe = wavefront.sample(mi.Float, mi.UInt32, self.material, view, u, active, slots, mode, lobes)
+            if len(lobe) == 0:
+                return dr.zeros(mi.BSDFSample3f, 0), dr.zeros(mi.Color3f, 0)
             bs = mi.BSDFSample3f(mi.Vector3f(*found[:3]))
             bs.pdf, bs.eta = found[6], found[7]
             bs.sampled_type, bs.sampled_component = mi.UInt32(0), mi.UInt32(0)

@@ -46,6 +46,13 @@ class Arrays:
         dr.eval(self.kept)
         dr.sync_thread()
 
+    def count(self):
+        """How many hits there are: what has one element serves all."""
+        lengths = {len(array) for array in self.kept}
+        if len(lengths - {1}) > 1:
+            raise RuntimeError(f"musurf: arrays of incompatible sizes: {', '.join(map(str, sorted(lengths)))}")
+        return min(lengths) if 0 in lengths else max(lengths)
+
     def memory(self, array):
         """Address and step of an evaluated array; one element serves all."""
         view = array.numpy()
@@ -83,7 +90,9 @@ def evaluate(Float, material, wo, wi, active, slots, mode, lobes):
     arrays = Arrays(*wo, *wi, *slots, active)
     n = len(wo)
     wo, wi, slots, active = arrays.kept[:n], arrays.kept[n:2 * n], arrays.kept[2 * n:-1], arrays.kept[-1]
-    count = max(len(array) for array in arrays.kept)
+    count = arrays.count()
+    if count == 0:
+        return [dr.zeros(Float, 0) for _ in range(4)]
     w = describe(material, arrays, count, wo, active, slots, mode, lobes)
     found, at = outputs(Float, count, 4)
     out = abi.Values((ctypes.c_void_p * 3)(*at[:3]), at[3])
@@ -96,7 +105,9 @@ def sample(Float, UInt32, material, wo, u, active, slots, mode, lobes):
     arrays = Arrays(*wo, *u, *slots, active)
     n = len(wo)
     wo, u, slots, active = arrays.kept[:n], arrays.kept[n:2 * n], arrays.kept[2 * n:-1], arrays.kept[-1]
-    count = max(len(array) for array in arrays.kept)
+    count = arrays.count()
+    if count == 0:
+        return [dr.zeros(Float, 0) for _ in range(8)], dr.zeros(UInt32, 0)
     w = describe(material, arrays, count, wo, active, slots, mode, lobes)
     found, at = outputs(Float, count, 8)
     (lobe,), (lobe_at,) = outputs(UInt32, count, 1)

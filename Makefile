@@ -122,7 +122,7 @@ help:
 	@echo 'Settings: BUILD=folder CC=gcc WERROR=1 OPTIMISE="-O3 -g" SANITIZE='
 
 clean:
-	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/musurf* $(BUILD)/lib* $(BUILD)/*.so*
+	rm -rf $(BUILD)/obj $(BUILD)/wasm $(BUILD)/tests $(BUILD)/musurf* $(BUILD)/lib* $(BUILD)/*.so*
 distclean:
 	rm -rf $(BUILD)
 

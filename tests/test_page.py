@@ -174,6 +174,29 @@ class Shown(page_host.Worked):
         self.page.until("musurf.state.roughness === 0.11 && !musurf.asked")
         self.assertEqual(self.numbers(), wanted)
 
+    def test_whatever_is_set_there_are_numbers(self):
+        """300 states all over the ranges, their ends among them: every number is one, or infinite (Lambda at the horizon, D of a mirror); what is
+        drawn has finite places; a refused M is told and leaves the page as it was."""
+        wrong = self.page.run("""(() => {
+            let seed = 7;
+            const random = () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
+            const pick = (list) => list[Math.floor(random() * list.length)], wrong = [], { choices } = musurf;
+            const end = (low, high) => pick([low, high, low + (high - low) * random(), low + (high - low) * random()]);
+            for (let i = 0; i < 300; i++) {
+                const wide = 10 ** (4 * random() - 2), M = [0, 0, 0, 0].map(() => pick([0, 1, wide]) * (2 * random() - 1));
+                musurf.change({ ndf: pick(choices.ndf), masking: pick(choices.masking), metal: pick(choices.metal), roughness: end(0, 1), gamma: end(0, 10),
+                                exponent: end(0, 1000), M, view: [end(0, 89.9), end(-180, 180)], light: [end(0, 89.9), end(-180, 180)], N: Math.ceil(end(1, 64)),
+                                k: end(0.1, 3), beta: end(0, 10), appendix_c: pick(choices.appendix_c), panels: pick(choices.panels) });
+                musurf.show();
+                const told = document.getElementById("complaint").textContent !== "", text = document.getElementById("numbers").textContent;
+                const paths = [...document.querySelectorAll("svg path")].map((path) => path.getAttribute("d") ?? "").join();
+                const dots = [...document.querySelectorAll("svg circle, svg g")].map((one) => (one.getAttribute("cx") ?? "") + one.getAttribute("transform")).join();
+                if (/NaN|none|undefined/.test(text) || /NaN|Infinity/.test(paths + dots)) wrong.push([told, JSON.stringify(musurf.state)]);
+            }
+            return wrong;
+        })()""")
+        self.assertEqual(wrong, [])
+
     def test_it_is_one_small_file(self):
         self.assertLess(PAGE.stat().st_size, 1e6)
         self.assertEqual([each for each in self.page.requests if each.startswith("file:")], [PAGE.as_uri()])

@@ -116,6 +116,13 @@ class Without(unittest.TestCase):
             self.assertEqual(page.run("document.getElementById('sphere-picture').width"), 256)
             self.assertEqual(page.complaints, [])
 
+    def test_an_address_that_asks_for_none(self):
+        with chromium.Page(PAGE.as_uri() + "#M=1,2,2,4&nonsense=1&ndf=%zz&metal=lead&N=x&roughness=7") as page:
+            page.until(READY)
+            self.assertIn("transform", page.run("document.getElementById('complaint').textContent"))
+            self.assertEqual(page.run("[musurf.state.N, musurf.state.roughness, musurf.state.ndf, musurf.state.metal]"), [8, 1, "gtr", "Ag"])
+            self.assertEqual(page.complaints, [])
+
     def test_without_web_assembly_it_says_so(self):
         with chromium.Page(PAGE.as_uri(), before="delete globalThis.WebAssembly") as page:
             page.until("!document.getElementById('failure').hidden")

@@ -40,6 +40,7 @@ class Page {
         this.addButtons();
         addEventListener("hashchange", () => location.hash.slice(1) !== textOfState(this.state) && this.replace(stateOfText(location.hash, choices)));
         matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.repaint());
+        this.replace(structuredClone(defaults)); // what is shown where the address asks for none
         this.replace(stateOfText(location.hash, choices));
     }
 

@@ -59,7 +59,7 @@ export class Numbers {
 
     show(state, numbers) {
         for (const [name, values] of Object.entries(numbers)) {
-            const text = values.map((x) => (Number.isFinite(x) ? String(x) : "∞"));
+            const text = values.map((x) => (Number.isFinite(x) ? String(x) : x > 0 ? "∞" : x < 0 ? "−∞" : "none"));
             this.cells[name].textContent = text.join("\n");
         }
         this.lines.eval.textContent = evalLine(state, numbers);

@@ -40,8 +40,14 @@ export function textOfState(state) {
         .join("&");
 }
 
-function valueOf(key, text) {
+function valueOf(key, coded) {
     const like = defaults[key];
+    let text;
+    try {
+        text = decodeURIComponent(coded);
+    } catch (error) { // an address that was cut
+        return undefined;
+    }
     if (typeof like === "string") return text;
     const numbers = text.split(",").map(Number);
     const right = Array.isArray(like) ? like.length : 1;
@@ -55,7 +61,7 @@ export function stateOfText(text, choices) {
     for (const part of text.replace(/^#/, "").split("&")) {
         const [key, ...rest] = part.split("=");
         if (!(key in defaults)) continue;
-        const value = valueOf(key, decodeURIComponent(rest.join("=")));
+        const value = valueOf(key, rest.join("="));
         if (value === undefined || (choices[key] && !choices[key].includes(value))) continue;
         state[key] = within(key, value);
     }

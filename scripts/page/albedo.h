@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * albedo.h: the directional albedo of the page's material, Fresnel included, by view: the other factor of the split integral.
+ * albedo.h: the directional albedo of the page's material, Fresnel included, by view: the other factor of the split
+ * integral.
  *
  * Nodes are even in the root of the cosine and in the azimuth from the lobe's axis U to V: the page's distributions are
  * radially symmetric before M, so that what is mirrored at U or V is the same.

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * curves.c: what is drawn over a panel (panel.h), as x, y of points: the confidence region's boundary, the major axis, samples and
- * their radius, the extrema. In double.
+ * curves.c: what is drawn over a panel (panel.h), as x, y of points: the confidence region's boundary, the major axis,
+ * samples and their radius, the extrema. In double.
  */
 #include "scripts/page/numbers.h"
 #include "scripts/page/panel.h"

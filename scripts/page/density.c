@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * density.c: the lobe of the material itself, as pictures of the three panels: P22 of slopes; D cos of micronormals; f cos of
- * reflected directions, with G2 and F, green's. In float, for they are pictures.
+ * density.c: the lobe of the material itself, as pictures of the three panels: P22 of slopes; D cos of micronormals; f
+ * cos of reflected directions, with G2 and F, green's. In float, for they are pictures.
  */
 #include "scripts/page/material.h"
 #include "scripts/page/panel.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * numbers.c: what `musurf eval` answers for a material, wo, wi and the micronormal halfway between, and `musurf ibl axis` for its
- * lobe; in double. They go out one after the other, in the order of `names`.
+ * numbers.c: what `musurf eval` answers for a material, wo, wi and the micronormal halfway between, and `musurf ibl
+ * axis` for its lobe; in double. They go out one after the other, in the order of page_number_names.
  */
 #include "scripts/page/numbers.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * page.h: what the page calls. This folder is a program, compiled to WebAssembly; numbers come and go as arrays in its memory.
- * Frame, units and names are those of core/bsdf/musurf.h; `query` is that of numbers.h.
+ * page.h: what the page calls. This folder is a program, compiled to WebAssembly; numbers come and go as arrays in its
+ * memory. Frame, units and names are those of core/bsdf/musurf.h; `query` is that of numbers.h.
  */
 #ifndef PAGE_PAGE_H
 #define PAGE_PAGE_H
@@ -26,13 +26,14 @@ int PAGE_EXPORT(page_material_set)(page_material *material, const double *number
 const char *PAGE_EXPORT(page_material_field)(const page_material *material);
 const char *PAGE_EXPORT(page_material_complaint)(const page_material *material);
 
-/* numbers.c: names, each with how many numbers it has; the numbers one after the other; the micronormals of the samples. */
+/* numbers.c: names, each with how many numbers it has; the numbers one after the other; the micronormals of the
+ * samples. */
 const char *PAGE_EXPORT(page_number_names)(void);
 void PAGE_EXPORT(page_numbers)(const page_material *material, const double *query, double *out);
 void PAGE_EXPORT(page_samples)(const page_material *material, const double *query, double *out);
 
-/* density.c, `frame`: panel.h: size x size pixels, row by row from the top; r, g, b are `ink`'s, opacity the root of the density over the largest,
- * which is returned. `work`: as many floats. */
+/* density.c, `frame`: panel.h: size x size pixels, row by row from the top; r, g, b are `ink`'s, opacity the root of
+ * the density over the largest, which is returned. `work`: as many floats. */
 double PAGE_EXPORT(page_density)(const page_material *material, const double *query, int space,
                                  const double *frame, int size, unsigned ink, float *work, unsigned *rgba);
 
@@ -48,7 +49,8 @@ typedef enum page_curve {
 int PAGE_EXPORT(page_curve_points)(const page_material *material, const double *query, int space,
                                    const double *frame, int curve, int count, double *out);
 
-/* surroundings.c: what lights the sphere; its sharpest square has `side` texels, a power of two from 64 on, to a side. NULL without memory. */
+/* surroundings.c: what lights the sphere; its sharpest square has `side` texels, a power of two from 64 on, to a side.
+ * NULL without memory. */
 typedef struct page_surroundings page_surroundings;
 const char *PAGE_EXPORT(page_surroundings_name)(int kind);
 page_surroundings *PAGE_EXPORT(page_surroundings_new)(int kind, int side);
@@ -62,8 +64,9 @@ page_sphere *PAGE_EXPORT(page_sphere_new)(void);
 void PAGE_EXPORT(page_sphere_set)(page_sphere *sphere, const page_material *material,
                                   const page_surroundings *surroundings, const double *query,
                                   const double *numbers, int samples);
-/* Rows `row` and size - 1 - row of the picture, one after the other. `sums`: of the sampled technique, three floats a pixel, which pass
- * `pass` adds to; NULL of the others. `linear`: where radiance goes, three floats a pixel; NULL: what is shown goes to `rgba`, with an opacity at the edge. */
+/* Rows `row` and size - 1 - row of the picture, one after the other. `sums`: of the sampled technique, three floats a
+ * pixel, which pass `pass` adds to; NULL of the others. `linear`: where radiance goes, three floats a pixel; NULL:
+ * what is shown goes to `rgba`, with an opacity at the edge. */
 void PAGE_EXPORT(page_sphere_rows)(const page_sphere *sphere, int row, int pass, float *sums, float *linear,
                                    uint32_t *rgba);
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * panel.h: the three panels, as Figures 2, 7, 8 of Cocco et al. 2024 and as `musurf ibl plot` draws them: slopes; micronormals; reflected
- * directions. x to the right, y upwards, -1 to 1 across a panel. Its frame says what of the plane it shows: how far to either side of which x, y.
- * The plane is that of slopes, or the equal-area projection from above in which the horizon is at 1.
+ * panel.h: the three panels, as Figures 2, 7, 8 of Cocco et al. 2024 and as `musurf ibl plot` draws them: slopes;
+ * micronormals; reflected directions. x to the right, y upwards, -1 to 1 across a panel. Its frame says what of the
+ * plane it shows: how far to either side of which x, y. The plane is that of slopes, or the equal-area projection from
+ * above in which the horizon is at 1.
  */
 #ifndef PAGE_PANEL_H
 #define PAGE_PANEL_H

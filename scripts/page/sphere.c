@@ -3,10 +3,10 @@
 /*
  * sphere.c: a sphere of the material, seen from afar, row by row.
  *
- * World space: +z up; the viewer stands toward -y, sees x to the right and z upwards. The sphere's tangent points east, along its
- * parallels, as that of the renderer's spheres: brushed around. Light comes from all around (surroundings.h), turned about
- * +z, through the reads of core/ibl; or by random directions of the material's own sampler, whose mean is the truth; or from one
- * parallel lamp, by the exact BRDF.
+ * World space: +z up; the viewer stands toward -y, sees x to the right and z upwards. The sphere's tangent points east,
+ * along its parallels, as that of the renderer's spheres: brushed around. Light comes from all around (surroundings.h),
+ * turned about +z, through the reads of core/ibl; or by random directions of the material's own sampler, whose mean is
+ * the truth; or from one parallel lamp, by the exact BRDF.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -120,8 +120,8 @@ static void look(const page_sphere *s, const spot *p, size_t count, const mu_ibl
     for (int k = 0; k < 4; k++) rgb[k] *= albedo[k];
 }
 
-/* Two opposite spots: seen in their frames the view is turned by half about the normal, and so are, of a lobe that half a turn leaves
- * as it is, the reads. */
+/* Two opposite spots: seen in their frames the view is turned by half about the normal, and so are, of a lobe that
+ * half a turn leaves as it is, the reads. */
 static void by_reads(const page_sphere *s, const spot *p, const spot *opposite, float rgb[2][4]) {
     mu_ibl_read reads[MU_IBL_READS_MOST];
     float albedo[4];

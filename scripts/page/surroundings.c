@@ -18,7 +18,8 @@ static void studio(const float w[3], float rgb[3]) {
     mu_studio_radiance(mu_v3(w[0], w[1], w[2]), rgb);
 }
 
-/* A clear evening: blue above, warm at the horizon, a sun of 4 degrees, 30 degrees up at azimuth -60, over dark ground. */
+/* A clear evening: blue above, warm at the horizon, a sun of 4 degrees, 30 degrees up at azimuth -60, over dark
+ * ground. */
 static void sky(const float w[3], float rgb[3]) {
     static const float zenith[3] = {0.10f, 0.22f, 0.50f}, horizon[3] = {0.95f, 0.80f, 0.62f},
                        ground[3] = {0.09f, 0.075f, 0.06f}, sun[3] = {0.43301270f, -0.75f, 0.5f};

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * tone.h: from radiance to bytes: times the exposure x goes to x (1 + x / w²) / (1 + x), which shows w as white (Reinhard et al.
- * 2002), then through the transfer curve of sRGB. By a table over x / (1 + x), for three powers a pixel are too many.
+ * tone.h: from radiance to bytes: times the exposure x goes to x (1 + x / w²) / (1 + x), which shows w as white
+ * (Reinhard et al. 2002), then through the transfer curve of sRGB. By a table over x / (1 + x), for three powers a
+ * pixel are too many.
  */
 #ifndef PAGE_TONE_H
 #define PAGE_TONE_H

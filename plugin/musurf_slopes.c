@@ -21,4 +21,8 @@ static musurf_result moments(const musurf_material *material, const double *m, m
     return MUSURF_OK;
 }
 
-const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments};
+static double tail(const musurf_material *material, double share) {
+    return mu_ibl_tail_of(&material->parsed.definition, share);
+}
+
+const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail};

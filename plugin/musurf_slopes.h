@@ -28,6 +28,9 @@ typedef struct musurf_slopes {
     /* [any] Under the whole M `m` (rows: what musurf_map.h's compose gives); NULL: the material's own, of one whose M is
      * constant. MUSURF_UNSUPPORTED: not known. */
     musurf_result (*moments)(const musurf_material *material, const double *m, musurf_moments *out);
+    /* [any] Read only if `size` says it is there. Before M: the distance from the mean within which that share of the slopes
+     * are, over that of the GGX of the same covariance; 1 where that is not known. */
+    double (*tail)(const musurf_material *material, double share);
 } musurf_slopes;
 
 #ifdef __cplusplus

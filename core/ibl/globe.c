@@ -7,25 +7,17 @@
 
 #if MU_REAL_BITS == 24
 
-static size_t side_of(size_t side, size_t least, size_t level) {
-    return side >> level > least ? side >> level : least;
-}
-
-size_t mu_ibl_globe_floats(size_t side, size_t least, size_t levels) {
+size_t mu_ibl_globe_floats(size_t levels, const size_t *sides) {
     size_t sum = 0;
-    for (size_t l = 0; l < levels; l++) {
-        const size_t whole = side_of(side, least, l) + 2;
-        sum += 4 * whole * whole;
-    }
+    for (size_t l = 0; l < levels; l++) sum += 4 * (sides[l] + 2) * (sides[l] + 2);
     return sum;
 }
 
-void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t side, size_t least, size_t levels, float *memory) {
+void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t levels, const size_t *sides, float *memory) {
     globe->levels = levels;
     for (size_t l = 0; l < levels; l++) {
-        const size_t own = side_of(side, least, l);
-        globe->level[l] = (mu_ibl_square){own, memory};
-        memory += 4 * (own + 2) * (own + 2);
+        globe->level[l] = (mu_ibl_square){sides[l], memory};
+        memory += 4 * (sides[l] + 2) * (sides[l] + 2);
     }
 }
 

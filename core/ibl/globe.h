@@ -23,10 +23,9 @@ typedef struct mu_ibl_globe {
     mu_ibl_square level[MU_IBL_LEVELS_MOST];
 } mu_ibl_globe;
 
-/* Squares of sides halved from a power of two until they reach `least` and then as large, `levels` in all: floats that they take,
- * and laid out in such memory (aligned to 16). */
-size_t mu_ibl_globe_floats(size_t side, size_t least, size_t levels);
-void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t side, size_t least, size_t levels, float *memory);
+/* Squares of these sides, powers of two: floats that they take, and laid out in such memory (aligned to 16). */
+size_t mu_ibl_globe_floats(size_t levels, const size_t *sides);
+void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t levels, const size_t *sides, float *memory);
 
 /* The texel in a row and column; the direction of place (x, y) in [0, 1]². */
 static inline float *mu_ibl_texel(const mu_ibl_square *square, size_t row, size_t column) {

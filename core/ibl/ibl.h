@@ -34,6 +34,9 @@ typedef struct mu_ibl_slopes {
 
 /* Those of a checked definition under its M. 0 for MU_CUSTOM, which does not tell them. */
 int mu_ibl_slopes_of(const mu_definition *definition, mu_ibl_slopes *out);
+/* The slope within which a share of all are, of a checked definition before M, over that of GGX of the same Sigma: its
+ * tail, from share to share. 1 where there is none, or nothing radially symmetric. */
+double mu_ibl_tail_of(const mu_definition *definition, double share);
 /* Those of a surface with these under a further M (rows): slopes go with M^-T. */
 mu_ibl_slopes mu_ibl_slopes_under(const mu_ibl_slopes *slopes, const double transform[4]);
 /* Those of a surface that consists of `count` others in these shares (any positive numbers; NULL: alike): linear in Sigma

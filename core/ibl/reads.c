@@ -65,19 +65,24 @@ static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_
     return n;
 }
 
-size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out) {
+size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
+                             mu_ibl_read *out) {
     switch (plan->technique) {
     case MU_IBL_BENT_NORMAL:
         return bent_normal(lobe, wo, out);
     case MU_IBL_MAJOR_AXIS:
         return major_axis(lobe, wo, &plan->settings, out);
     case MU_IBL_LOBE:
-        return mu_ibl_spread_reads(&plan->spread, plan->settings.samples, lobe, wo, out);
+        return mu_ibl_spread_reads(plan, phase, lobe, wo, out);
     case MU_IBL_FILTERED:
-        return mu_ibl_importance_reads(&plan->spread, plan->settings.samples, lobe, wo, out);
+        return mu_ibl_importance_reads(&plan->spread[0], plan->settings.samples, lobe, wo, out);
     default:
         return split(lobe, wo, out);
     }
+}
+
+size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out) {
+    return mu_ibl_reads_of_phase(plan, 0, lobe, wo, out);
 }
 
 #endif

@@ -35,23 +35,39 @@ typedef enum mu_ibl_technique {
     MU_IBL_FILTERED
 } mu_ibl_technique;
 
+/* The shape of a distribution beside GGX's: that many times as far from the mean is the slope within which a share i /
+ * (MU_IBL_TAIL - 1) of all are, i = 0, 1 ...; GGX of the same Sigma is 1 throughout. */
+enum { MU_IBL_TAIL = 33 };
+/* Several pictures of one place, samples of a pixel, look between each other's reads: phases of the same. */
+enum { MU_IBL_PHASES = 4 };
+/* How many reads are chosen at most, where their number is. */
+enum { MU_IBL_READS_CHOSEN = 33 };
+
 /* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c); of MU_IBL_FILTERED (importance.c). */
 typedef struct mu_ibl_spread {
-    float along[MU_IBL_READS_MOST], across[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
+    size_t count;
     float step; /* between neighbours, in asinh of `along` */
+    float along[MU_IBL_READS_MOST], across[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
 } mu_ibl_spread;
 
-/* What is decided once per picture. */
+/* What is decided once per material. */
 typedef struct mu_ibl_plan {
     mu_ibl_technique technique;
     mu_ibl_settings_f settings;
-    mu_ibl_spread spread; /* of those that have one */
+    int tailed; /* of MU_IBL_LOBE */
+    float tail[MU_IBL_TAIL];
+    mu_ibl_spread spread[MU_IBL_PHASES]; /* of MU_IBL_FILTERED the first */
 } mu_ibl_plan;
 
-/* samples from 1 to MU_IBL_READS_MOST. */
+/* samples from 1 to MU_IBL_READS_MOST; of MU_IBL_LOBE 0 as well: as many as the lobe needs, which changes without a
+ * jump. For GGX; and for another shape: its MU_IBL_TAIL numbers. */
 void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan);
+void mu_ibl_plan_tail(mu_ibl_plan *plan, const float *tail);
 
-/* How many there are, at most MU_IBL_READS_MOST: 1, or settings.samples. wo.z > 0. */
+/* How many there are, at most MU_IBL_READS_MOST: 1, settings.samples, or what was chosen. wo.z > 0. */
 size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out);
+/* Of any number: those of sample `phase` of a pixel. */
+size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
+                             mu_ibl_read *out);
 
 #endif

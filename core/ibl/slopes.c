@@ -33,35 +33,35 @@ MU(mu_ibl_lobe) MU(mu_ibl_lobe_of)(const mu_ibl_slopes *s) {
 
 #define SHARE (1.0 / 3)
 
-/* Of a radially symmetric distribution: the squared slope that SHARE are below; -1 if it is not told. */
-static double matched_square(const mu_definition *d) {
+/* Of a radially symmetric distribution: the squared slope that a share of all are below; -1 if it is not told. */
+static double square_of(const mu_definition *d, double share) {
     const double a = d->alpha * d->alpha;
     switch (d->ndf) {
     case MU_GGX:
     case MU_DISCRETE_GGX:
-        return a / 2;
+        return share / (1 - share) * a;
     case MU_BECKMANN:
     case MU_DISCRETE_BECKMANN:
-        return -log1p(-SHARE) * a;
+        return -log1p(-share) * a;
     case MU_GTR: { /* q = (x + a) / (1 + x): those above x are (q^e - 1) / (a^e - 1), e = 1 - gamma */
         if (d->alpha == 0 && d->gamma >= 1) return 0;
-        if (d->alpha == 1) return SHARE / (1 - SHARE); /* q = 1: GGX */
+        if (d->alpha == 1) return share / (1 - share); /* q = 1: GGX */
         const double ln_a = 2 * log(d->alpha), e = 1 - d->gamma, y = e * ln_a;
         /* ln(q/a) and ln q, each where the other would lose digits or overflow (gtr_shape.h) */
-        double above = -SHARE * ln_a, below = (1 - SHARE) * ln_a;
+        double above = -share * ln_a, below = (1 - share) * ln_a;
         if (e != 0) {
-            above = log1p(SHARE * expm1(-y)) / e, below = log1p((1 - SHARE) * expm1(y)) / e;
+            above = log1p(share * expm1(-y)) / e, below = log1p((1 - share) * expm1(y)) / e;
             if (y > 40) below = above + ln_a;
             if (y < -40) above = below - ln_a;
         }
         return above > 40 ? exp(below) / -expm1(below) : a * expm1(above) / -expm1(below);
     }
     case MU_STD: /* (1 + x/b)^(1 - gamma), b = (gamma - 1) alpha² */
-        return (d->gamma - 1) * a * expm1(log1p(-SHARE) / (1 - d->gamma));
+        return (d->gamma - 1) * a * expm1(log1p(-share) / (1 - d->gamma));
     case MU_PHONG: /* (1 + x)^-(n + 2)/2 */
-        return expm1(-2 * log1p(-SHARE) / (d->exponent + 2));
+        return expm1(-2 * log1p(-share) / (d->exponent + 2));
     case MU_SHEEN: { /* 1 - (x / (1 + x))^(1 + 1/2r) */
-        const double ln = log(SHARE) / (1 + 0.5 / d->alpha);
+        const double ln = log(share) / (1 + 0.5 / d->alpha);
         return exp(ln) / -expm1(ln);
     }
     case MU_FLAT:
@@ -132,12 +132,19 @@ static mu_ibl_slopes under(const double mean[2], const double root[3], const dou
         first[1] * first[1] + second[1] * second[1]};
 }
 
+double mu_ibl_tail_of(const mu_definition *d, double share) {
+    const double own = d->ndf == MU_TABULATED ? -1 : square_of(d, SHARE);
+    if (!(own > 0)) return 1;
+    const double within = fmin(fmax(share, 1e-6), 1 - 1e-6); /* GGX's: share / (1 - share) of alpha², own is half that */
+    return fmin(fmax(sqrt(square_of(d, within) / (2 * own) * ((1 - within) / within)), 1e-3), 1e3);
+}
+
 int mu_ibl_slopes_of(const mu_definition *d, mu_ibl_slopes *out) {
     double mean[2] = {0, 0}, root[3] = {0, 0, 0};
     if (d->ndf == MU_TABULATED) {
         matched_histogram(d, mean, root);
     } else {
-        const double square = matched_square(d);
+        const double square = square_of(d, SHARE);
         if (square < 0) return 0;
         root[0] = root[2] = sqrt(square);
     }

@@ -8,11 +8,14 @@
  * GGX lobes that come nearest to it (least squares of the relative error, N = 4, 8, 16, b = 1/40 to 1, found by a search) are
  * so to a few per cent: v evenly spaced, weights sech² v, each width B b sqrt(1 + x²) with B = 0.73 + 0.27 b², and x
  * narrowed by sqrt(1 - b²), so that a round lobe is one read. Where N is too small for so narrow a lobe, all are
- * wider, OVERLAP of their distance, so that the gaps between them close.
+ * wider, OVERLAP of their distance, so that the gaps between them close: less, and a lamp is a row of beads.
  *
  * Wider than WIDEST a lobe is no longer that plane picture: shadowing and the sphere bend it. There the reads are kept narrower,
  * and stand across the axis too, by the golden ratio: a lattice that is even however it is stretched (its shortest
  * vectors stay as long as may be), so that nothing jumps between a row and a disk.
+ *
+ * Other distributions are GGX whose slopes are moved away from the mean or towards it, `tail` times (reads.h), until as many
+ * are within: so are the reads, and they widen with it.
  *
  * Where they stand is mapped as visible micronormals are (visible.h): distances, the mean slope, and the parts that face away are
  * theirs. Weights are those times G2 / G1, as of samples of visible normals; below the horizon they are 0. Micronormals
@@ -28,9 +31,17 @@
 
 #include "core/ibl/visible.h"
 
-#define OVERLAP 0.25f
+#define OVERLAP 0.22f
 #define WIDEST  0.5f
 #define GOLDEN  0.61803398874989485
+/* v of N reads ends at REACH ln N, found by measurement: 2.2 at 16. */
+#define REACH 0.8
+/* Of a chosen number: where v ends; and how far apart reads are that are `width` wide: twice that where they are narrow, while
+ * round ones are few but not too few. */
+#define FAR 2.0f
+static inline float apart(float width) {
+    return smaller(2 * width, 0.35f + 0.5f * width);
+}
 
 /* The t below which a share of Student's distribution of (1 + t²)^-2 is. */
 static double quantile(double share) {
@@ -42,32 +53,71 @@ static double quantile(double share) {
     return (low + high) / 2;
 }
 
-void mu_ibl_spread_make(size_t count, mu_ibl_spread *s) {
-    double all = 0;
-    const double reach = log((double)count) * 0.7, step = 2 * reach / (double)count;
-    s->step = (float)step;
-    for (size_t j = 0; j < count; j++) {
-        const double i = (double)j - ((double)count - 1) / 2, v = i * step, place = GOLDEN * i + 0.5;
-        s->along[j] = (float)sinh(v), s->across[j] = (float)quantile(place - floor(place));
-        all += 1 / (cosh(v) * cosh(v));
-    }
-    for (size_t j = 0; j < count; j++) s->weight[j] = (float)(1 / ((1 + square(s->along[j])) * all));
+/* At a slope of which tanh² v are smaller. */
+static inline float tail_at(const float *tail, float share) {
+    const float place = smaller(share, 1) * (float)(MU_IBL_TAIL - 1);
+    const int low = (int)smaller(place, (float)(MU_IBL_TAIL - 2));
+    return tail[low] + (place - (float)low) * (tail[low + 1] - tail[low]);
 }
 
-size_t mu_ibl_spread_reads(const mu_ibl_spread *spread, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
+void mu_ibl_spread_make(size_t count, size_t phase, const float *tail, mu_ibl_spread *s) {
+    const double turned = GOLDEN * (double)phase + 0.5, shift = phase ? turned - floor(turned) - 0.5 : 0;
+    const double step = 2 * REACH * log((double)count) / (double)count;
+    double all = 0;
+    s->count = count, s->step = (float)step;
+    for (size_t j = 0; j < count; j++) {
+        const double i = (double)j - ((double)count - 1) / 2 + shift, v = i * step, place = GOLDEN * i + 0.5;
+        s->along[j] = (float)sinh(v), s->across[j] = (float)quantile(place - floor(place));
+        s->tail[j] = tail ? tail_at(tail, (float)(tanh(v) * tanh(v))) : 1;
+        all += 1 / (cosh(v) * cosh(v));
+    }
+    for (size_t j = 0; j < count; j++) s->weight[j] = (float)(1 / all) / (1 + square(s->along[j]));
+}
+
+/* As many as needed, from -K to K steps: those at the ends come and go with weight 0. sinh of multiples by sums. */
+static void choose(const mu_ibl_plan *plan, float step, mu_ibl_spread *s) {
+    const size_t each = (size_t)ceil(larger(FAR / step - 0.5f, 0)), middle = MU_IBL_READS_MOST / 2 - 1;
+    const float s1 = sinh(step), c1 = cosh(step);
+    float sine = 0, cosine = 1;
+    s->count = 2 * each + 1, s->step = step;
+    for (size_t k = 0; k <= each; k++) {
+        const float part = smaller(larger((FAR - (float)(int)k * step) / step + 0.5f, 0), 1) / square(cosine);
+        const float tail = plan->tailed ? tail_at(plan->tail, square(sine / cosine)) : 1;
+        for (size_t side = 0; side < 2; side++) {
+            const size_t j = side ? each - k : each + k;
+            s->along[j] = side ? -sine : sine, s->weight[j] = k ? part : 1, s->tail[j] = tail;
+            s->across[j] = plan->spread[0].across[side ? middle - k : middle + k];
+        }
+        const float next = sine * c1 + cosine * s1;
+        cosine = cosine * c1 + sine * s1, sine = next;
+    }
+}
+
+size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                            mu_ibl_read *out) {
     const visible f = visible_of(lobe, wo);
     const stretched e = stretched_middle(&f);
     const float b = e.major > 0 ? e.minor / e.major : 1, own = (0.73f + 0.27f * b * b) * b;
-    const float least = larger(sqrt(b / (float)count), OVERLAP * spread->step);
-    const float width = e.major > 0 ? larger(smaller(own, WIDEST / e.major), least) : own;
+    const mu_ibl_spread *spread = &plan->spread[phase % MU_IBL_PHASES];
+    mu_ibl_spread chosen;
+    float width = e.major > 0 ? smaller(own, WIDEST / e.major) : own;
+    if (!plan->settings.samples) {
+        const float narrow = b * width / own, along = sqrt(larger(1 - narrow * narrow, 1e-6f));
+        choose(plan, larger(apart(width / along), 2 * FAR / (MU_IBL_READS_CHOSEN - 1)), &chosen);
+        spread = &chosen;
+        width = larger(width, OVERLAP * spread->step);
+    } else if (e.major > 0) {
+        width = larger(width, larger(sqrt(b / (float)spread->count), OVERLAP * spread->step));
+    }
+    const size_t count = spread->count;
     const float narrow = b * width / own; /* what the width leaves of the spread, along and across */
     const float along = sqrt(larger(1 - narrow * narrow, 0)), across = sqrt(larger(1 - width * width / (own * own), 0));
     const float radius = 0.5f * width * e.major * e.normal, upper = 1 - f.half, seen = f.length * f.half;
     float x[3][MU_IBL_READS_MOST], rough[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST], all = 0;
     for (size_t j = 0; j < count; j++) {
         const float sx = along * spread->along[j], sy = across * spread->across[j] * sqrt(1 + sx * sx);
-        const float flat = 1 / sqrt(1 + sx * sx + sy * sy), dx = sx * flat, dy = sy * flat;
+        const float tail = spread->tail[j], far = sx * sx + sy * sy, moved = 1 + tail * tail * far;
+        const float flat = tail / sqrt(moved), dx = sx * flat, dy = sy * flat;
         const float p = e.turn[0] * dx - e.turn[1] * dy, free = larger(1 - p * p, 0);
         const float q = upper * sqrt(free) + f.half * (e.turn[1] * dx + e.turn[0] * dy);
         const float lift = sqrt(larger(free - q * q, 0));
@@ -81,22 +131,34 @@ size_t mu_ibl_spread_reads(const mu_ibl_spread *spread, size_t count, const mu_i
                             r[2] - f.mean[0] * r[0] - f.mean[1] * r[1]};
         const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
         weight[j] = spread->weight[j] * seen * up / larger(seen * up + wo[2] * hidden, REAL_MIN);
-        rough[j] = sqrt(radius * sqrt(inverse));
+        rough[j] = sqrt(radius * sqrt(inverse * tail * tail * (1 + far) / moved));
         all += weight[j];
     }
+    const float share = all > 0 ? 1 / all : 1 / (float)count; /* none is above: alike, of an albedo of about 0 */
     for (size_t j = 0; j < count; j++)
-        out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]},
-                               smaller(rough[j], 1),
-                               all > 0 ? weight[j] / all : spread->weight[j]};
+        out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]}, smaller(rough[j], 1), all > 0 ? share * weight[j] : share};
     return count;
+}
+
+static void spread_all(mu_ibl_plan *plan, const float *tail) {
+    const size_t count = plan->settings.samples ? plan->settings.samples : MU_IBL_READS_MOST - 1;
+    for (size_t phase = 0; phase < MU_IBL_PHASES; phase++) mu_ibl_spread_make(count, phase, tail, &plan->spread[phase]);
 }
 
 void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan) {
     plan->technique = technique, plan->settings = *settings;
+    plan->tailed = 0;
     if (technique == MU_IBL_FILTERED)
-        plan->settings.samples = mu_ibl_importance_make(settings->samples, &plan->spread);
+        plan->settings.samples = mu_ibl_importance_make(settings->samples, &plan->spread[0]);
     else
-        mu_ibl_spread_make(settings->samples, &plan->spread);
+        spread_all(plan, NULL);
+}
+
+void mu_ibl_plan_tail(mu_ibl_plan *plan, const float *tail) {
+    if (plan->technique != MU_IBL_LOBE) return;
+    plan->tailed = 1;
+    for (size_t i = 0; i < MU_IBL_TAIL; i++) plan->tail[i] = tail[i];
+    spread_all(plan, tail);
 }
 
 #endif

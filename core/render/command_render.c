@@ -277,7 +277,7 @@ static _Bool read_scene(mu_job *job, mu_error *error) {
         job->scene.film.height = options->height;
     }
     if (options->integrator >= 0) mu_integrator_choose(&job->scene.integrator, (size_t)options->integrator);
-    if (options->reads) job->scene.integrator.reads = (uint32_t)options->reads;
+    if (options->reads) job->scene.integrator.reads = options->reads == MU_READS_AUTO ? 0 : (uint32_t)options->reads;
     if (options->seed_given) job->scene.integrator.seed = options->seed;
     return 1;
 }

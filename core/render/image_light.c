@@ -17,14 +17,15 @@
 typedef struct lit_material {
     mu_lobe_source source;
     mu_albedo_table albedo;
+    mu_ibl_plan plan;
 } lit_material;
 
 struct mu_image_light {
-    mu_ibl_plan plan;
     mu_ibl_globe globe;
     float *memory; /* of the globe */
     lit_material *materials;
     uint32_t count;
+    _Bool means;
 };
 
 /* Where a ray arrived; false: black from here. */
@@ -72,7 +73,8 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         memcpy(out[i].normal, &shading.frame.n, sizeof out[i].normal);
         if (!bright) continue;
         mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
-        const size_t n = mu_ibl_reads(&light->plan, &lobe, shading.wo, reads);
+        if (!light->means) lobe.mean[0] = lobe.mean[1] = 0;
+        const size_t n = mu_ibl_reads_of_phase(&light->materials[hits[i].material].plan, sample, &lobe, shading.wo, reads);
         out[i].reads = (uint32_t)n;
         mu_ibl_batch batch;
         batch.count = n;
@@ -174,8 +176,14 @@ static _Bool lights_around(const mu_scene *scene, mu_error *error) {
 }
 
 void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *settings) {
-    const mu_ibl_settings_f own = {settings->k, settings->beta, settings->reads, settings->appendix_c};
-    mu_ibl_plan_make(settings->technique, &own, &light->plan);
+    const size_t reads = settings->reads || settings->technique == MU_IBL_LOBE ? settings->reads : mu_ibl_settings_default_f().samples;
+    light->means = settings->means;
+    const mu_ibl_settings_f own = {settings->k, settings->beta, reads, settings->appendix_c};
+    for (uint32_t m = 0; m < light->count; m++) {
+        lit_material *material = &light->materials[m];
+        mu_ibl_plan_make(settings->technique, &own, &material->plan);
+        if (settings->tails && material->source.tailed) mu_ibl_plan_tail(&material->plan, material->source.tail);
+    }
 }
 
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error) {
@@ -184,10 +192,11 @@ mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, m
         mu_fail(error, "not enough memory");
         return NULL;
     }
-    mu_image_light_choose(light, &tracer->scene->integrator);
     if (lights_around(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
-        (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error)))
+        (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error))) {
+        mu_image_light_choose(light, &tracer->scene->integrator);
         return light;
+    }
     mu_image_light_free(light);
     return NULL;
 }

@@ -3,6 +3,9 @@
 /* lobes.c: see lobes.h. */
 #include "core/render/lobes.h"
 
+#include <math.h>
+#include <stddef.h>
+
 static const char *refusal(const mu_material *m, const musurf_slopes *slopes, const musurf_map *map, _Bool varies) {
     if (m->plan.lobes & ~(uint32_t)(MUSURF_GLOSSY_REFLECTION | MUSURF_DELTA_REFLECTION))
         return "does more than reflect off its microsurface";
@@ -26,6 +29,12 @@ _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named
     const mu_ibl_slopes own = {{s->mean[0], s->mean[1]}, s->xx, s->xy, s->yy};
     source->map = varies ? map : NULL;
     source->lobe = mu_ibl_lobe_of_f(&own);
+    source->tailed = 0;
+    const _Bool told = slopes->size > offsetof(musurf_slopes, tail) && slopes->tail;
+    for (size_t i = 0; i < MU_IBL_TAIL; i++) {
+        source->tail[i] = told ? (float)slopes->tail(m->compiled, (double)i / (MU_IBL_TAIL - 1)) : 1;
+        source->tailed = source->tailed || fabsf(source->tail[i] - 1) > 1e-3f;
+    }
     return 1;
 }
 

@@ -7,7 +7,7 @@
 #ifndef MU_LOBES_H
 #define MU_LOBES_H
 
-#include "core/ibl/ibl.h"
+#include "core/ibl/reads.h"
 #include "core/render/shading.h"
 #include "plugin/musurf_slopes.h"
 
@@ -15,6 +15,8 @@ typedef struct mu_lobe_source {
     const musurf_map *map;  /* NULL: M is constant, and so is the lobe */
     musurf_moments moments; /* before M, where it varies */
     mu_ibl_lobe_f lobe;     /* where it does not */
+    float tail[MU_IBL_TAIL];
+    _Bool tailed; /* that is not GGX's */
 } mu_lobe_source;
 
 _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named, mu_error *error);

@@ -18,7 +18,8 @@ enum { OUTPUT, INTEGRATOR, READS, SPP, TIME, NOISE, THREADS, SEED, SIZE, FRAME, 
 static const mu_option option_list[] = {
     {"o", "OUT.exr", "the image, written when it is complete and whole"},
     {"integrator", "path|split|bent-normal|major-axis|lobe|filtered", "how light is found (default: the scene's, or path)"},
-    {"reads", "N", "of the filtered environment, of major-axis, lobe and filtered, 1 to 64 (default: the scene's, or 16)"},
+    {"reads", "N|auto", "of the filtered environment, of major-axis, lobe and filtered, 1 to 64 (default: the scene's, or 16); auto:\n"
+     "of lobe as many as each pixel needs, 1 to 33, of others 16"},
     {"spp", "N", "samples per pixel (default: the scene's)"},
     {"time", "S", "stop before S seconds have passed; at least one sample per pixel is taken"},
     {"noise", "E", "stop when the mean relative standard error of the pixels is E or less"},
@@ -133,7 +134,9 @@ static _Bool take(mu_render_options *options, int met, const mu_options *given) 
     case INTEGRATOR:
         return mu_options_choice(given, mu_integrators, &options->integrator);
     case READS:
-        return mu_options_unsigned(given, 1, MU_IBL_READS_MOST, &options->reads);
+        if (strcmp(given->value, "auto")) return mu_options_unsigned(given, 1, MU_IBL_READS_MOST, &options->reads);
+        options->reads = MU_READS_AUTO;
+        return 1;
     case SPP:
         return mu_options_unsigned(given, 1, MU_MOST_SAMPLES, &options->samples);
     case TIME:

@@ -6,13 +6,15 @@
 
 #include "core/render/options.h"
 
+#define MU_READS_AUTO UINT64_MAX
+
 typedef struct mu_render_options {
     const char *scene, *output, *png; /* borrowed from argv; output and png may be NULL */
     uint64_t samples;                 /* 0: not given */
     double seconds, noise;            /* 0: not given */
     uint32_t threads;
     uint32_t width, height; /* 0: not given */
-    uint64_t seed, reads;             /* reads 0: not given */
+    uint64_t seed, reads;             /* reads 0: not given; MU_READS_AUTO: as many as the lobe needs */
     int integrator;                   /* of mu_integrators; -1: not given */
     long long frame;                  /* MU_NO_FRAME: not given */
     double pose_time;                 /* -1: not given */

@@ -39,9 +39,10 @@ typedef struct mu_film_settings {
 typedef struct mu_integrator_settings {
     _Bool by_image;             /* lit by `technique` (image_light.h); else by paths */
     mu_ibl_technique technique; /* read if by_image */
-    uint32_t reads;             /* of the filtered environment, of techniques that have a choice */
+    uint32_t reads;             /* of the filtered environment, of techniques that have a choice; 0: as needed */
     float k, beta;              /* of the major axis, as is this: core/ibl/ibl_real.h */
     mu_ibl_shift appendix_c;
+    _Bool tails, means; /* of lobes: whether a distribution that is not GGX, and a mean slope, move the reads */
     uint32_t depth;    /* longest path: number of scattering events; 1 = direct light only */
     uint32_t roulette; /* Russian roulette from this many events on */
     uint32_t samples;  /* per pixel, unless the command line says otherwise */

@@ -86,6 +86,17 @@ void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
     if (index) integrator->technique = techniques[index - 1];
 }
 
+/* A number, or "auto". */
+static _Bool read_reads(const mu_place *integrator, uint32_t *reads, mu_error *error) {
+    static const char *const chosen[] = {"auto", NULL};
+    const mu_place place = mu_place_member(integrator, "reads");
+    size_t index;
+    if (!json_is_string(place.value)) return mu_read_count(integrator, "reads", 1, MU_IBL_READS_MOST, reads, error);
+    if (!mu_place_choice(&place, chosen, &index, error)) return 0;
+    *reads = 0;
+    return 1;
+}
+
 _Bool mu_read_integrator(mu_reader *reader) {
     mu_integrator_settings *integrator = &reader->scene->integrator;
     mu_error *error = reader->error;
@@ -93,13 +104,13 @@ _Bool mu_read_integrator(mu_reader *reader) {
     const mu_place place = mu_place_member(&reader->root, "integrator");
     const mu_ibl_settings_f axis = mu_ibl_settings_default_f();
     *integrator = (mu_integrator_settings){
-        .depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = 16, .k = axis.k, .beta = axis.beta, .seed = 0};
+        .depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = 16, .k = axis.k, .beta = axis.beta, .tails = 1, .means = 1, .seed = 0};
     if (!place.value) return 1;
     if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
         !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||
         !mu_read_count(&place, "depth", 1, 4096, &integrator->depth, error) ||
         !mu_read_count(&place, "roulette", 1, 4096, &integrator->roulette, error) ||
-        !mu_read_count(&place, "reads", 1, MU_IBL_READS_MOST, &integrator->reads, error) ||
+        !read_reads(&place, &integrator->reads, error) ||
         !mu_read_float(&place, "k", 1e-3, 1e3, &integrator->k, error) ||
         !mu_read_float(&place, "beta", 0, 1e3, &integrator->beta, error) ||
         !mu_read_choice(&place, "appendix_c", shifts, &shift, error) ||
@@ -107,6 +118,10 @@ _Bool mu_read_integrator(mu_reader *reader) {
         return 0;
     integrator->appendix_c = shift ? MU_IBL_PRINTED : MU_IBL_SYMMETRIC;
     mu_integrator_choose(integrator, by);
+    const mu_place tails = mu_place_member(&place, "tails"), means = mu_place_member(&place, "means");
+    if ((tails.value && !mu_place_flag(&tails, &integrator->tails, error)) ||
+        (means.value && !mu_place_flag(&means, &integrator->means, error)))
+        return 0;
     const mu_place seed = mu_place_member(&place, "seed"), lights = mu_place_member(&place, "light_sampling");
     _Bool sampled = 1;
     long long value;

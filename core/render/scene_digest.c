@@ -62,6 +62,7 @@ uint64_t mu_scene_digest(const mu_scene *scene, uint64_t seed) {
     digest = add(digest, &scene->integrator.k, sizeof scene->integrator.k);
     digest = add(digest, &scene->integrator.beta, sizeof scene->integrator.beta);
     digest = mix(digest, scene->integrator.appendix_c);
+    digest = mix(digest, 2u * scene->integrator.tails + scene->integrator.means);
     const char *plugin;
     for (size_t i = 0; (plugin = mu_plugins_opened(scene->plugins, i)); ++i)
         digest = add_file(digest, plugin);

@@ -14,7 +14,7 @@ static const struct {
     [MU_KEYS_ORTHOGRAPHIC] = {"orthographic", {"type", "position", "target", "up", "height", NULL}},
     [MU_KEYS_FILM] = {"film", {"width", "height", "filter", "radius", "exposure", "pixels", NULL}},
     [MU_KEYS_INTEGRATOR] = {"integrator", {"samples", "depth", "roulette", "seed", "light_sampling", "light_candidates", "by", "reads", "k",
-                                       "beta", "appendix_c", NULL}},
+                                       "beta", "appendix_c", "tails", "means", NULL}},
     [MU_KEYS_MESH] = {"mesh", {"file", NULL}},
     [MU_KEYS_RECTANGLE] = {"rectangle",
                            {"shape", "size", "material", "transform", "two_sided", "grid", NULL}},

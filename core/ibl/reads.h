@@ -47,7 +47,8 @@ enum { MU_IBL_READS_CHOSEN = 33 };
 typedef struct mu_ibl_spread {
     size_t count;
     float step; /* between neighbours, in asinh of `along` */
-    float along[MU_IBL_READS_MOST], across[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
+    float across[MU_IBL_READS_MOST]; /* of MU_IBL_FILTERED alone */
+    float along[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
 } mu_ibl_spread;
 
 /* What is decided once per material. */

@@ -10,9 +10,8 @@
  * narrowed by sqrt(1 - b²), so that a round lobe is one read. Where N is too small for so narrow a lobe, all are
  * wider, OVERLAP of their distance, so that the gaps between them close: less, and a lamp is a row of beads.
  *
- * Wider than WIDEST a lobe is no longer that plane picture: shadowing and the sphere bend it. There the reads are kept narrower,
- * and stand across the axis too, by the golden ratio: a lattice that is even however it is stretched (its shortest
- * vectors stay as long as may be), so that nothing jumps between a row and a disk.
+ * Everything moves with b alone, and at b = 1, where the axis has no direction, all reads are one: nothing jumps from pixel to pixel.
+ * (A lattice in the whole disk for wide lobes gains a tenth of FLIP there, but turns about where b is 1.)
  *
  * Other distributions are GGX whose slopes are moved away from the mean or towards it, `tail` times (reads.h), until as many
  * are within: so are the reads, and they widen with it.
@@ -32,7 +31,6 @@
 #include "core/ibl/visible.h"
 
 #define OVERLAP 0.22f
-#define WIDEST  0.5f
 #define GOLDEN  0.61803398874989485
 /* v of N reads ends at REACH ln N, found by measurement: 2.2 at 16. */
 #define REACH 0.8
@@ -41,16 +39,6 @@
 #define FAR 2.0f
 static inline float apart(float width) {
     return smaller(2 * width, 0.35f + 0.5f * width);
-}
-
-/* The t below which a share of Student's distribution of (1 + t²)^-2 is. */
-static double quantile(double share) {
-    double low = -1e3, high = 1e3;
-    for (int i = 0; i < 60; i++) {
-        const double t = (low + high) / 2;
-        *(0.5 + (t / (1 + t * t) + atan(t)) / PI < share ? &low : &high) = t;
-    }
-    return (low + high) / 2;
 }
 
 /* At a slope of which tanh² v are smaller. */
@@ -66,8 +54,8 @@ void mu_ibl_spread_make(size_t count, size_t phase, const float *tail, mu_ibl_sp
     double all = 0;
     s->count = count, s->step = (float)step;
     for (size_t j = 0; j < count; j++) {
-        const double i = (double)j - ((double)count - 1) / 2 + shift, v = i * step, place = GOLDEN * i + 0.5;
-        s->along[j] = (float)sinh(v), s->across[j] = (float)quantile(place - floor(place));
+        const double v = ((double)j - ((double)count - 1) / 2 + shift) * step;
+        s->along[j] = (float)sinh(v);
         s->tail[j] = tail ? tail_at(tail, (float)(tanh(v) * tanh(v))) : 1;
         all += 1 / (cosh(v) * cosh(v));
     }
@@ -76,7 +64,7 @@ void mu_ibl_spread_make(size_t count, size_t phase, const float *tail, mu_ibl_sp
 
 /* As many as needed, from -K to K steps: those at the ends come and go with weight 0. sinh of multiples by sums. */
 static void choose(const mu_ibl_plan *plan, float step, mu_ibl_spread *s) {
-    const size_t each = (size_t)ceil(larger(FAR / step - 0.5f, 0)), middle = MU_IBL_READS_MOST / 2 - 1;
+    const size_t each = (size_t)ceil(larger(FAR / step - 0.5f, 0));
     const float s1 = sinh(step), c1 = cosh(step);
     float sine = 0, cosine = 1;
     s->count = 2 * each + 1, s->step = step;
@@ -86,7 +74,6 @@ static void choose(const mu_ibl_plan *plan, float step, mu_ibl_spread *s) {
         for (size_t side = 0; side < 2; side++) {
             const size_t j = side ? each - k : each + k;
             s->along[j] = side ? -sine : sine, s->weight[j] = k ? part : 1, s->tail[j] = tail;
-            s->across[j] = plan->spread[0].across[side ? middle - k : middle + k];
         }
         const float next = sine * c1 + cosine * s1;
         cosine = cosine * c1 + sine * s1, sine = next;
@@ -97,29 +84,30 @@ size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_l
                            mu_ibl_read *out) {
     const visible f = visible_of(lobe, wo);
     const stretched e = stretched_middle(&f);
-    const float b = e.major > 0 ? e.minor / e.major : 1, own = (0.73f + 0.27f * b * b) * b;
+    const float b = e.major > 0 ? e.minor / e.major : 1, share = 0.73f + 0.27f * b * b, own = share * b;
     const mu_ibl_spread *spread = &plan->spread[phase % MU_IBL_PHASES];
     mu_ibl_spread chosen;
-    float width = e.major > 0 ? smaller(own, WIDEST / e.major) : own;
+    float width;
     if (!plan->settings.samples) {
-        const float narrow = b * width / own, along = sqrt(larger(1 - narrow * narrow, 1e-6f));
-        choose(plan, larger(apart(width / along), 2 * FAR / (MU_IBL_READS_CHOSEN - 1)), &chosen);
+        const float step = apart(own / sqrt(larger(1 - b * b, 1e-6f)));
+        choose(plan, larger(step, 2 * FAR / (MU_IBL_READS_CHOSEN - 1)), &chosen);
         spread = &chosen;
-        width = larger(width, OVERLAP * spread->step);
-    } else if (e.major > 0) {
-        width = larger(width, larger(sqrt(b / (float)spread->count), OVERLAP * spread->step));
+        width = larger(own, OVERLAP * spread->step);
+    } else {
+        width = larger(own, larger(sqrt(b / (float)spread->count), OVERLAP * spread->step));
     }
     const size_t count = spread->count;
-    const float narrow = b * width / own; /* what the width leaves of the spread, along and across */
-    const float along = sqrt(larger(1 - narrow * narrow, 0)), across = sqrt(larger(1 - width * width / (own * own), 0));
-    const float radius = 0.5f * width * e.major * e.normal, upper = 1 - f.half, seen = f.length * f.half;
+    const float narrow = width / share, along = sqrt(larger(1 - narrow * narrow, 0)); /* what the width leaves */
+    /* the middle of a chord up the disk is upper sqrt(1 - x²) high; its mean over what the row does not resolve across, by area: */
+    const float mean = 8 / (3 * (float)PI), unresolved = square(e.turn[1]) + square(e.turn[0] * narrow);
+    const float upper = (1 - f.half) * (1 - (1 - mean) * unresolved);
+    const float radius = 0.5f * width * e.major * e.normal, seen = f.length * f.half;
     float x[3][MU_IBL_READS_MOST], rough[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST], all = 0;
     for (size_t j = 0; j < count; j++) {
-        const float sx = along * spread->along[j], sy = across * spread->across[j] * sqrt(1 + sx * sx);
-        const float tail = spread->tail[j], far = sx * sx + sy * sy, moved = 1 + tail * tail * far;
-        const float flat = tail / sqrt(moved), dx = sx * flat, dy = sy * flat;
-        const float p = e.turn[0] * dx - e.turn[1] * dy, free = larger(1 - p * p, 0);
-        const float q = upper * sqrt(free) + f.half * (e.turn[1] * dx + e.turn[0] * dy);
+        const float slope = along * spread->along[j], tail = spread->tail[j], moved = 1 + square(tail * slope);
+        const float place = tail * slope / sqrt(moved);
+        const float p = e.turn[0] * place, free = larger(1 - p * p, 0);
+        const float q = upper * sqrt(free) + f.half * e.turn[1] * place;
         const float lift = sqrt(larger(free - q * q, 0));
         float m[3], n[3], r[3];
         for (int k = 0; k < 3; k++) m[k] = p * f.x[k] + q * f.y[k] + lift * f.w[k];
@@ -131,12 +119,12 @@ size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_l
                             r[2] - f.mean[0] * r[0] - f.mean[1] * r[1]};
         const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
         weight[j] = spread->weight[j] * seen * up / larger(seen * up + wo[2] * hidden, REAL_MIN);
-        rough[j] = sqrt(radius * sqrt(inverse * tail * tail * (1 + far) / moved));
+        rough[j] = sqrt(radius * sqrt(inverse * tail * tail * (1 + slope * slope) / moved));
         all += weight[j];
     }
-    const float share = all > 0 ? 1 / all : 1 / (float)count; /* none is above: alike, of an albedo of about 0 */
+    const float each = all > 0 ? 1 / all : 1 / (float)count; /* none is above: alike, of an albedo of about 0 */
     for (size_t j = 0; j < count; j++)
-        out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]}, smaller(rough[j], 1), all > 0 ? share * weight[j] : share};
+        out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]}, smaller(rough[j], 1), all > 0 ? each * weight[j] : each};
     return count;
 }
 

@@ -85,14 +85,15 @@ static inline double albedo_s(const mu_albedo_side *side, double row) {
 static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side *side,
                                        const mu_albedo_frame *f, const float w[3]) {
     const float x = f->to[0] * w[0] + f->to[1] * w[1], y = f->to[2] * w[0] + f->to[3] * w[1];
-    const float r2 = x * x + y * y, r = sqrtf(r2), n = r + w[2], flat = f->ratio;
-    const float X = r > 0 ? f->k * fabsf(x) : f->k, Y = r > 0 ? fabsf(y) : f->k, both = X + Y,
-                least = X + flat * Y;
+    const float r2 = x * x + y * y, r = sqrtf(r2), n = r + w[2], flat = t->frame.ratio;
+    const float X = r > 0 ? t->frame.k * fabsf(x) : t->frame.k, Y = r > 0 ? fabsf(y) : t->frame.k,
+                both = X + Y, least = X + flat * Y;
     const int round = t->columns == 1;
-    const float u = round ? 0.5f : fminf(log1pf((1 - flat) * Y / least) / f->log, 1);
-    const float around =
-        round ? 0.63661977f * f->det
-              : f->k * f->det * (1 - flat) * (r > 0 ? r2 : 1 + f->k * f->k) / (f->log * both * least);
+    const float u = round ? 0.5f : fminf(log1pf((1 - flat) * Y / least) / t->frame.log, 1);
+    const float around = round
+                             ? 0.63661977f * f->det
+                             : t->frame.k * f->det * (1 - flat) * (r > 0 ? r2 : 1 + t->frame.k * t->frame.k) /
+                                   (t->frame.log * both * least);
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
     const float still = w[2] * (n + r) / (n * n); /* 1 - (r / n)² */
     float rest = still, part = 1;

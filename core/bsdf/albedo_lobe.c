@@ -22,8 +22,8 @@ void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const m
     const float root = side->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)),
                 r = root * (1 + root) / fmaxf(rest, 1e-7f);
     const int round = t->columns == 1;
-    const float x = round ? cosf(u * (float)(PI / 2)) : -expm1f((u - 1) * f->log) / f->k,
-                y = round ? sinf(u * (float)(PI / 2)) : expm1f(u * f->log), scale = r / hypotf(x, y);
+    const float x = round ? cosf(u * (float)(PI / 2)) : -expm1f((u - 1) * t->frame.log) / t->frame.k,
+                y = round ? sinf(u * (float)(PI / 2)) : expm1f(u * t->frame.log), scale = r / hypotf(x, y);
     const float q[2] = {quadrant & 1 ? -scale * x : scale * x, quadrant & 2 ? -scale * y : scale * y};
     w[0] = f->from[0] * q[0] + f->from[1] * q[1];
     w[1] = f->from[2] * q[0] + f->from[3] * q[1];
@@ -62,7 +62,7 @@ static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
         integrate(t, f, side, quadrant, u0, u1, s0, s1, sums);
     } else {
         double high = u1;
-        for (; high * (double)f->log > 0.5; high /= 2)
+        for (; high * (double)t->frame.log > 0.5; high /= 2)
             integrate(t, f, side, quadrant, high / 2, high, s0, s1, sums);
         integrate(t, f, side, quadrant, 0, high, s0, s1, sums);
     }

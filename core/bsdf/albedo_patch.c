@@ -137,15 +137,14 @@ static int refine(patch_maker *m, rect *r, size_t panels) {
     const float cells = m->table->frame.log / (1.5f * (float)m->table->columns);
     float *const left = r->left;
     int done[2] = {isotropic, 0}, split = -1;
-    /* of a root patch something has to be known */
-    const int is_root = !(left[0] > 0 || left[1] > 0);
-    if (is_root) panels = SIZE_MAX;
+    /* of a root patch something has to be known: its first looks have no end */
+    int unknown[2] = {!(left[0] > 0 || left[1] > 0), !(left[0] > 0 || left[1] > 0)};
     for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
         if (done[axis]) continue;
         const float before = left[axis];
         const int few = axis == 0 && (float)(1 << (r->level[0] + r->log[0])) < cells;
-        left[axis] = few ? 1 : look_between(m, r, axis, panels);
-        done[axis] = 1;
+        left[axis] = few ? 1 : look_between(m, r, axis, unknown[axis] ? SIZE_MAX : panels);
+        done[axis] = 1, unknown[axis] = 0;
         /* of a look that has to end early, what the one before said is known, at most */
         if (source->effort->panels >= panels && !few) left[axis] = fmaxf(left[axis], before);
         if (left[axis] <= wanted) continue;
@@ -218,7 +217,7 @@ void mu_albedo_grow(patch_maker *m, size_t panels) {
     mu_albedo_side *const side = m->side;
     const int roots = m->table->quadrants * m->table->columns * ALBEDO_ROWS;
     /* what is not even turns within a quadrant as it likes, and a look sees nodes alone */
-    const int least_log = m->table->quadrants > 1 ? LEAF : 1;
+    const int least_log = m->table->quadrants > 1 && !m->source->trusting ? LEAF : 1;
     const rect whole = {{0, 0}, {0, 0}, {m->table->columns == 1 ? 0 : least_log, least_log}, {0, 0}};
     side->unsure = 0, effort->off = 0;
     side->patch = m->patch, side->patches = (uint32_t)roots, side->cells = 0, m->nodes = 0;

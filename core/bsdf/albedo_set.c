@@ -2,14 +2,15 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* albedo_set.c: makes the tables of a surface, and chooses among them. */
 #include "core/bsdf/albedo_set.h"
+#include "core/bsdf/albedo_maker.h"
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/singular.h"
 #include <string.h>
 
 #if MU_REAL_BITS == 24
 
-/* Where a tilt has edges of its own, tables of blurring are sqrt(2) apart, from here to there. */
-static const float tilted_from = -6, tilted_to = 3, tilted_step = 0.5f;
+/* log2 of the roughnesses between which blurring has tables. */
+static const float blurs_from = -7.5f, blurs_to = 4.2f;
 /* Floats that a table takes at most: alike in all azimuths, even along two axes, or tilted. */
 enum { FEW = 1 << 10, SOME = 1 << 14, MANY = 1 << 16, BLUR_CELLS = 4, BLUR_HALVINGS = 7 };
 
@@ -101,15 +102,6 @@ static float least_roughness(const surface *s) {
     return exp2f(high);
 }
 
-/* The next node, none much closer than nodes are; but where blurring reaches the larger roughness too, E bends. */
-static float next_blur(float step, float log_blur, float bend) {
-    float next = log_blur + step;
-    for (int k = ALBEDO_NODES - 1; !(step > 0) && k >= 0 && mu_albedo_nodes[k] > log_blur + 0.25f; k--)
-        next = mu_albedo_nodes[k];
-    if (!(next > log_blur)) next = INFINITY;
-    return bend > log_blur + 0.05f ? fminf(next, bend) : next;
-}
-
 /* s M^-1 of what blurring makes of a surface. */
 static void blurred_view(const surface *s, float blur, double v[4]) {
     closure c;
@@ -118,18 +110,50 @@ static void blurred_view(const surface *s, float blur, double v[4]) {
     for (int k = 0; k < 4; k++) v[k] = (double)(c.map.view[k] / c.map.view_z);
 }
 
+/* What is lost at a place in the frame that blurring makes; of what keeps to frames of its own, toward a direction. */
+typedef struct blur_probes {
+    const albedo_source *source;
+    int tilted, sides;
+} blur_probes;
+
+static float probe_blur(const void *context, float x, int probe) {
+    const blur_probes *const p = context;
+    albedo_source source = *p->source;
+    const int k = probe / p->sides, many = ALBEDO_PROBES / p->sides;
+    const double height = (k + 0.5) / many, phi = 2 * PI * fmod(k * 0.6180339887498949, 1);
+    double at[3] = {cos(phi), sin(phi), p->tilted ? height / sqrt(1 - height * height) : 1 / height - 1};
+    if (!p->tilted) {
+        double v[4];
+        mu_albedo_frame f;
+        blurred_view(source.surface, exp2f(x) * 1.000001f, v);
+        mu_albedo_lay(v, &f);
+        const double q[2] = {at[0], at[1]};
+        for (int i = 0; i < 2; i++) at[i] = (double)f.from[2 * i] * q[0] + (double)f.from[2 * i + 1] * q[1];
+    }
+    const double length = sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]),
+                 sign = probe % p->sides ? -1 : 1;
+    const float w[3] = {(float)(sign * at[0] / length), (float)(sign * at[1] / length),
+                        (float)(sign * at[2] / length)};
+    closure c;
+    source.blur = exp2f(x) * 1.000001f;
+    if (!mu_albedo_bind(&source, w, &c)) return 1;
+    return 1 - MU(albedo_integral)(&c, 1, fmin(source.error / 4, 1e-3), source.effort);
+}
+
 static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *room) {
     const int sides = source->surface->transmission ? 2 : 1, tilted = out->level[0].quadrants > 1;
-    const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f)),
-                last = tilted ? tilted_to : mu_albedo_nodes[ALBEDO_NODES - 1],
-                bend = least - log2f(out->level[0].frame.ratio), step = tilted ? tilted_step : 0;
-    float at = fmaxf(least, tilted ? tilted_from : mu_albedo_nodes[0]);
-    source->halvings = BLUR_HALVINGS, source->trusting = 1;
-    source->error *= tilted ? sides : 0.6;
-    for (; out->levels <= ALBEDO_BLURS && at <= last; at = next_blur(step, at, bend)) {
-        source->blur = exp2f(at) * 1.000001f;
-        source->panels = ALBEDO_PANELS * 3 / 4 / ALBEDO_BLURS;
-        out->log_blur[out->levels - 1] = at;
+    const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f));
+    const blur_probes context = {source, tilted, sides};
+    const albedo_probes probes = {probe_blur, &context, ALBEDO_PROBES / sides * sides};
+    const size_t before = source->effort->panels, may_take = source->panels;
+    source->halvings = BLUR_HALVINGS, source->trusting = 1, source->error *= 0.6;
+    const int count = mu_albedo_place_nodes(
+        &probes, fminf(fmaxf(least, blurs_from), blurs_to), blurs_to, (float)source->error / 2,
+        tilted && sides == 2 ? ALBEDO_BLURS / 2 : ALBEDO_BLURS, out->log_blur);
+    for (int k = 0; k < count; k++) {
+        const size_t taken = source->effort->panels - before;
+        source->blur = exp2f(out->log_blur[k]) * 1.000001f;
+        source->panels = (may_take > taken ? may_take - taken : 0) / (size_t)(1 + (count - 1 - k) / 4);
         mu_albedo_make(source, &out->level[out->levels++], room, 2 * floats_of_one(source->definition, 1));
     }
     for (int k = 0; k < 2 * out->levels - 3; k++) {
@@ -175,13 +199,17 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
     mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
     out->levels = 1, out->blurs = d->compensation_blurs;
-    out->unsure = 0, out->grid = out->blurred = (albedo_grid){NULL, {NULL, NULL}};
+    out->unsure = 0, out->grid = out->blurred = (albedo_grid){.table = NULL};
+    /* the rest of the work is for these */
+    source.panels = ALBEDO_PANELS / 4 * 3 / (size_t)(grid_tables(d) > ALBEDO_GRID_TABLES ? 2 : 1);
     if (d->compensation_varies)
         make_grids(&source, out, (void *)grid, single_at, &room);
     else if (out->blurs)
         make_blurs(&source, out, &room);
     float own = 0;
-    for (int k = 0; k < (d->transmission ? 2 : 1); k++) own = fmaxf(own, out->level[0].side[k].unsure);
+    for (int k = 0; k < out->levels; k++)
+        for (int side = 0; side < (d->transmission ? 2 : 1); side++)
+            own = fmaxf(own, out->level[k].side[side].unsure);
     if (own > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, own);
     for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
     out->bytes =

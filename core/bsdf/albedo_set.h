@@ -20,24 +20,34 @@
 
 /* Nodes along a slope roughness; what is blurred with a tilt has as many at most. */
 enum {
-    ALBEDO_NODES = 14,
-    ALBEDO_BLURS = 20,
+    ALBEDO_NODES = 20,
+    ALBEDO_BLURS = 24,
     ALBEDO_GRID_TABLES = ALBEDO_NODES * (ALBEDO_NODES - 1) / 2,
     ALBEDO_GRID_AVERAGES = ALBEDO_NODES * (2 * ALBEDO_NODES - 1),
     ALBEDO_GRID_MEAN = 3 << 9, /* floats that a table takes as a mean, and at most */
     ALBEDO_GRID_MOST = 1 << 13
 };
 /* Work that refining the tables of a surface may take (albedo_effort): */
-enum { ALBEDO_PANELS = 16000000 };
-/* log2 of the roughnesses (albedo_grid.c). */
-extern const float mu_albedo_nodes[ALBEDO_NODES];
+enum { ALBEDO_PANELS = 12000000 };
 /* How far a roughness is from one to another, all as log2: linear in A^1.5 / (1 + A^1.5), which follows both limits. */
 float mu_albedo_share(float log_a, float from, float to);
+
+/* What is lost by probes of a roughness x, and how many there are; and the nodes, `most` of them, from x to x, whose tables keep
+ * interpolation to an error if they can: their number. */
+enum { ALBEDO_PROBES = 48 };
+typedef struct albedo_probes {
+    float (*lost)(const void *context, float x, int probe);
+    const void *context;
+    int count;
+} albedo_probes;
+int mu_albedo_place_nodes(const albedo_probes *p, float from, float to, float error, int most, float *nodes);
 
 /* Tables at slope roughnesses i >= j (albedo_grid_node); ln of the averages there and midway between. */
 typedef struct albedo_grid {
     const mu_albedo *table;
     const float *log_average[2]; /* of both sides */
+    int count;                   /* of nodes, log2 of roughnesses */
+    float node[ALBEDO_NODES];
 } albedo_grid;
 
 static inline int albedo_grid_node(int i, int j) {

@@ -80,8 +80,9 @@ static void choose(const mu_ibl_plan *plan, float step, mu_ibl_spread *s) {
     }
 }
 
-size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
-                           mu_ibl_read *out) {
+/* `tailed`: a constant, so that GGX does not pay for it. */
+HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3], int tailed,
+                mu_ibl_read *out) {
     const visible f = visible_of(lobe, wo);
     const stretched e = stretched_middle(&f);
     const float b = e.major > 0 ? e.minor / e.major : 1, share = 0.73f + 0.27f * b * b, own = share * b;
@@ -104,7 +105,7 @@ size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_l
     const float radius = 0.5f * width * e.major * e.normal, seen = f.length * f.half;
     float x[3][MU_IBL_READS_MOST], rough[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST], all = 0;
     for (size_t j = 0; j < count; j++) {
-        const float slope = along * spread->along[j], tail = spread->tail[j], moved = 1 + square(tail * slope);
+        const float slope = along * spread->along[j], tail = tailed ? spread->tail[j] : 1, moved = 1 + square(tail * slope);
         const float place = tail * slope / sqrt(moved);
         const float p = e.turn[0] * place, free = larger(1 - p * p, 0);
         const float q = upper * sqrt(free) + f.half * e.turn[1] * place;
@@ -119,13 +120,18 @@ size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_l
                             r[2] - f.mean[0] * r[0] - f.mean[1] * r[1]};
         const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
         weight[j] = spread->weight[j] * seen * up / larger(seen * up + wo[2] * hidden, REAL_MIN);
-        rough[j] = sqrt(radius * sqrt(inverse * tail * tail * (1 + slope * slope) / moved));
+        rough[j] = sqrt(radius * sqrt(inverse * (tailed ? tail * tail * (1 + slope * slope) / moved : 1)));
         all += weight[j];
     }
     const float each = all > 0 ? 1 / all : 1 / (float)count; /* none is above: alike, of an albedo of about 0 */
     for (size_t j = 0; j < count; j++)
         out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]}, smaller(rough[j], 1), all > 0 ? each * weight[j] : each};
     return count;
+}
+
+size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
+                           mu_ibl_read *out) {
+    return plan->tailed ? look(plan, phase, lobe, wo, 1, out) : look(plan, phase, lobe, wo, 0, out);
 }
 
 static void spread_all(mu_ibl_plan *plan, const float *tail) {

@@ -42,11 +42,11 @@ static inline visible visible_of(const mu_ibl_lobe_f *l, const float wo[3]) {
     /* its largest part first made 1: of a view along the horizon squares may be 0 in float */
     const float part = larger(larger(fabs(f.w[0]), fabs(f.w[1])), fabs(f.w[2]));
     for (int k = 0; k < 3; k++) f.w[k] = part > 0 ? f.w[k] / part : (float)(k == 2);
-    const float length = sqrt(dot(f.w, f.w));
-    for (int k = 0; k < 3; k++) f.w[k] /= length;
+    const float length = sqrt(dot(f.w, f.w)), whole = 1 / length;
+    for (int k = 0; k < 3; k++) f.w[k] *= whole;
     f.length = length * part;
-    const float flat = sqrt(f.w[0] * f.w[0] + f.w[1] * f.w[1]);
-    f.x[0] = flat > 0 ? -f.w[1] / flat : 1, f.x[1] = flat > 0 ? f.w[0] / flat : 0, f.x[2] = 0;
+    const float flat = sqrt(f.w[0] * f.w[0] + f.w[1] * f.w[1]), across = 1 / flat;
+    f.x[0] = flat > 0 ? -f.w[1] * across : 1, f.x[1] = flat > 0 ? f.w[0] * across : 0, f.x[2] = 0;
     f.y[0] = -f.w[2] * f.x[1], f.y[1] = f.w[2] * f.x[0], f.y[2] = flat; /* w x (x, y, 0) */
     f.half = (1 + f.w[2]) / 2;
     return f;
@@ -61,19 +61,21 @@ typedef struct stretched {
 static inline stretched stretched_middle(const visible *f) {
     const float up = 1 - f->half, lift = sqrt(larger(1 - up * up, REAL_EPSILON));
     float m[3], d[2][3], n[3], moved[2][3], along[2];
+    const float fall = up / lift;
     for (int k = 0; k < 3; k++) {
         m[k] = up * f->y[k] + lift * f->w[k];
-        d[0][k] = f->x[k], d[1][k] = f->half * (f->y[k] - up / lift * f->w[k]);
+        d[0][k] = f->x[k], d[1][k] = f->half * (f->y[k] - fall * f->w[k]);
     }
     stretched e;
     visible_normal(f, m, n);
     e.normal = sqrt(dot(n, n));
-    for (int k = 0; k < 3; k++) n[k] /= e.normal;
+    const float shrunk = 1 / e.normal;
+    for (int k = 0; k < 3; k++) n[k] *= shrunk;
     const float cosine = dot(n, f->wo);
     for (int i = 0; i < 2; i++) {
         visible_normal(f, d[i], moved[i]);
         const float stays = dot(moved[i], n);
-        for (int k = 0; k < 3; k++) moved[i][k] = (moved[i][k] - stays * n[k]) / e.normal;
+        for (int k = 0; k < 3; k++) moved[i][k] = (moved[i][k] - stays * n[k]) * shrunk;
         along[i] = dot(moved[i], f->wo);
     }
     /* of r = 2 (n.wo) n - wo: dr.dr' = 4 ((n.wo)² dn.dn' + (dn.wo)(dn'.wo)) */

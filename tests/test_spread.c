@@ -190,8 +190,26 @@ static void test_tails(void **state) {
     assert_true(reach[0] < 0.8 * reach[1] && reach[2] > 1.1 * reach[1]);
 }
 
+/* Samples of a pixel look between each other's reads: shifted by multiples of the golden ratio, of which four leave 0.146 of a step
+ * between two at least. In the middle of a lobe that is narrow and seen from above, steps are even: 0.1 is asked for. */
+static void test_phases(void **state) {
+    (void)state;
+    const mu_ibl_plan plan = plan_of(16);
+    const mu_ibl_lobe_f lobe = {.sigma = {0.01f, 0.0005f}, .turn = {1, 0}};
+    const float wo[3] = {0, 0, 1};
+    double place[2 * MU_IBL_PHASES];
+    for (size_t phase = 0; phase < MU_IBL_PHASES; phase++) {
+        mu_ibl_read reads[MU_IBL_READS_MOST];
+        assert_int_equal(mu_ibl_reads_of_phase(&plan, phase, &lobe, wo, reads), 16);
+        for (size_t k = 0; k < 2; k++) place[2 * phase + k] = (double)reads[7 + k].direction[0];
+    }
+    const double step = fabs(place[1] - place[0]);
+    for (size_t i = 0; i < 2 * MU_IBL_PHASES; i++)
+        for (size_t j = 0; j < i; j++) assert_true(fabs(place[i] - place[j]) > 0.1 * step);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_where_the_lobe_is), cmocka_unit_test(test_turns),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_phases), cmocka_unit_test(test_where_the_lobe_is), cmocka_unit_test(test_turns),
                                        cmocka_unit_test(test_mean_slope), cmocka_unit_test(test_no_jump), cmocka_unit_test(test_tails)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

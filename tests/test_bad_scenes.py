@@ -51,6 +51,7 @@ CASES = [
     ('"width": 8', '"width": 8.5', "8.5", "$.film.width", ["whole"]),
     ('"width": 8, "height": 8', '"width": 32768, "height": 32768', '{"width"', "$.film", ["too many"]),
     ('"samples": 1', '"samples": true', "true},\n \"mat", "$.integrator.samples", ["whole number"]),
+    ('"samples": 1', '"reads": "often"', "\"often\"},\n", "$.integrator.reads", ["whole number", "auto"]),
     ('"musurf": 1', '"musurf": 2', "2,\n \"camera\"", "$.musurf", ["1"]),
     ('"type": "constant"', '"type": "constan"', '"constan"', "$.lights[0].type", ["constant"]),
     ('"shape": "sphere"', '"shape": "spere"', '"spere"', "$.objects[0].shape", ["sphere"]),

@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* scene_camera.c: "camera", "film" and "integrator": where from, onto what, and how much work. */
 #include <math.h>
+#include <string.h>
 
 #include "core/render/affine.h"
 #include "core/render/direct.h"
@@ -88,11 +89,12 @@ void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
 
 /* A number, or "auto". */
 static _Bool read_reads(const mu_place *integrator, uint32_t *reads, mu_error *error) {
-    static const char *const chosen[] = {"auto", NULL};
     const mu_place place = mu_place_member(integrator, "reads");
-    size_t index;
+    const char *text;
     if (!json_is_string(place.value)) return mu_read_count(integrator, "reads", 1, MU_IBL_READS_MOST, reads, error);
-    if (!mu_place_choice(&place, chosen, &index, error)) return 0;
+    if (!mu_place_string(&place, &text, error)) return 0;
+    if (strcmp(text, "auto"))
+        return mu_place_fail(&place, error, "is \"%s\"; a whole number from 1 to %d or \"auto\" is needed", text, MU_IBL_READS_MOST);
     *reads = 0;
     return 1;
 }

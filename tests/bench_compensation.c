@@ -23,7 +23,7 @@
 #include "tests/uniform.h"
 
 #define TURN 6.28318530717958648
-enum { VIEWS = 30, DRAWS = 1 << 15, MANY = 1 << 17, SAMPLES = 1 << 15, SIDE = 64 };
+enum { VIEWS = 30, DRAWS = 1 << 15, MANY = 1 << 20, SAMPLES = 1 << 15, SIDE = 64 };
 
 static const struct family {
     const char *name;

@@ -13,6 +13,7 @@
 #if MU_REAL_BITS == 24
 
 enum { STEPS = 72 };
+static const float widest = 2.1f; /* between nodes: averages are quadratic there, and know less of them */
 
 /* The most that probes are off between the steps i and j. */
 static float off_between(const albedo_probes *p, const float (*lost)[ALBEDO_PROBES], const float *x, int i,
@@ -33,7 +34,7 @@ static int place(const albedo_probes *p, const float (*lost)[ALBEDO_PROBES], con
     nodes[count++] = x[0];
     while (i < STEPS && count <= most) {
         int j = i + 1;
-        while (j < STEPS && off_between(p, lost, x, i, j + 1) <= error) j++;
+        while (j < STEPS && x[j + 1] - x[i] <= widest && off_between(p, lost, x, i, j + 1) <= error) j++;
         if (count < most) nodes[count] = x[j];
         count++, i = j;
     }

@@ -7,8 +7,11 @@ import html
 from reporting import curves as drawing
 
 from . import draw, techniques, verdicts
+from . import effort as efforts
 
 HEADS = ["technique", "reads", "frame", "shading", "FLIP, α_lin < 0.5", "> 0.5", "relative error, < 0.5", "> 0.5"]
+
+NOTE = "*: the least FLIP for α_lin < 0.5 among what is not published and costs no more than the major axis with 16 reads."
 
 
 def row(entry, bent, best):
@@ -61,7 +64,7 @@ def fragment(result, folder, curves, shown):
     return ("<h2>Image-based lighting</h2>\n<p>Techniques of <code>musurf render --integrator</code> (Cocco, Zanni and Chermain 2024) against path tracing. "
             f"{html.escape(about(result))}</p>\n"
             f"<table><thead><tr><th>claim</th><th>found</th><th>verdict</th></tr></thead><tbody>{judged}</tbody></table>\n"
-            + table(HEADS, rows(result["techniques"])) + "<p class=faint>*: the least FLIP among those that cost no more than the major axis with 16 reads.</p>\n"
+            + table(HEADS, rows(result["techniques"])) + "<p class=faint>" + NOTE + "</p>\n"
             + "\n".join(figure(folder, name, caption) for name, caption in shown)
             + ("<p>Whole scenes. The pot shades itself in the truth, and in no other picture.</p>" if scenes else "")
             + (table(["scene", "environment", "technique", "frame", "FLIP", "relative error", "FLIP of the truth’s halves"], scenes) if scenes else "")
@@ -70,8 +73,8 @@ def fragment(result, folder, curves, shown):
 
 def readme(result):
     bent, best = verdicts.of(result["techniques"], by=techniques.BASELINE), verdicts.improved(result["techniques"])
-    chosen = [e for e in result["techniques"] if e is best or e in draw.shown(result["techniques"]) or e["integrator"].get("reads") in (None, 4, 16, 64)]
+    chosen = [e for e in result["techniques"] if e is best or e in draw.shown(result["techniques"]) or e["integrator"].get("reads") in (None, 4, 16, 64, "auto") or e["integrator"] == {"by": techniques.FILTERED, "reads": efforts.FILTERED}]
     lines = ["| " + " | ".join(cells) + " |" for cells in [HEADS, ["---"] * len(HEADS), *(row(entry, bent, best) for entry in chosen)]]
     scenes = [f"{s['name']} under {s['environment']}: " + ", ".join(f"{e['label']} {e['flip']:.4f}" for e in s["techniques"]) for s in result["scenes"]]
     claims = [f"- {verdict(c)}: {c['claim']} ({c['number']})" for c in result["claims"]]
-    return about(result) + "\n\n" + "\n".join(lines) + "\n\n" + ("Mean FLIP of whole scenes: " + "; ".join(scenes) + ".\n\n" if scenes else "") + "\n".join(claims) + "\n"
+    return about(result) + "\n\n" + "\n".join(lines) + "\n\n" + NOTE + "\n\n" + ("Mean FLIP of whole scenes: " + "; ".join(scenes) + ".\n\n" if scenes else "") + "\n".join(claims) + "\n"

@@ -22,7 +22,8 @@ def all_of(musurf, effort):
     found = []
     for name in names(musurf):
         reads = {efforts.FILTERED, *(n for n in effort.reads if name != FILTERED or n in SQUARES)}
-        found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in sorted(reads | {efforts.SEED})]
+        chosen = ["auto"] if name not in PUBLISHED and '"auto"' in json.dumps(keys()["reads"]) else []  # as many as each pixel needs
+        found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in [*sorted(reads | {efforts.SEED}), *chosen]]
     return found
 
 
@@ -32,10 +33,14 @@ def contenders(musurf, best=None):
     return found + [best] if best and best not in found else found
 
 
+def keys():
+    """What an "integrator" of a scene file may say."""
+    return json.loads((scene.ROOT / "scenes" / "scene.schema.json").read_text())["$defs"]["integrator"]["properties"]
+
+
 def sweeps(effort):
     """{"k" or "beta": [integrator]}, as far as scene files have these keys."""
-    keys = json.loads((scene.ROOT / "scenes" / "scene.schema.json").read_text())["$defs"]["integrator"]["properties"]
-    return {key: [{"by": SEED, "reads": efforts.SEED, key: value} for value in values] for key, values in (("k", effort.k), ("beta", effort.beta)) if key in keys}
+    return {key: [{"by": SEED, "reads": efforts.SEED, key: value} for value in values] for key, values in (("k", effort.k), ("beta", effort.beta)) if key in keys()}
 
 
 def label(integrator):

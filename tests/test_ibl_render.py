@@ -92,6 +92,14 @@ class Render(unittest.TestCase):
             self.assertGreater(inside.sum(), 50)
             self.assertLess(numpy.abs(constant - varying).max(), 1e-3 * constant.max())
 
+    def test_a_mirror_under_a_varying_map(self):
+        """No M makes a mirror rough or dark: the same as without, in even light all of it."""
+        for mirror in ({"ndf": "flat"}, {"alpha": 0}):
+            ball = [{"shape": "sphere", "radius": 1, "material": microfacet(jacobian={"u": "u", "v": "v + 2*u^5"}, **mirror)}]
+            for by in ("split", "lobe"):
+                seen = self.render(by, ball, {"type": "constant"}, [0.3, -0.9, 0.3], size=8)
+                self.assertLess(numpy.abs(seen - 1).max(), 1e-5, (mirror, by))
+
     def test_against_paths(self):
         """A sphere of Figure 19: mean FLIP of the major axis is below that of the bent normal for alpha_lin < 0.5, and of reads all over
         the lobe below half of the major axis'; as many as each pixel needs are no worse than a fixed number by more than a

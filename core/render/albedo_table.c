@@ -29,7 +29,7 @@ typedef struct work {
     const mu_albedo_table *table;
     const mu_material *material;
     const musurf_map *map;
-    double root[3]; /* of the moments before M: lower triangle */
+    double root[3]; /* of the moments before M: lower triangle; 0: a mirror, which no M makes rough */
     const mu_ibl_lobe_f *lobe;
     uint32_t most; /* batches */
 } work;
@@ -81,8 +81,8 @@ static void fill(void *context, uint32_t row) {
                              exp((double)(t->least[1] + (float)second * t->step[1]))};
     /* M = diag(1 / sigma) root^T: then M^-T root root^T M^-1 is diag(sigma²) */
     for (int k = 0; k < 2; k++) {
-        m[2 * k] = (float)(k ? 0 : w->root[0] / sigma[0]);
-        m[2 * k + 1] = (float)((k ? w->root[2] : w->root[1]) / sigma[k]);
+        m[2 * k] = (float)(k ? 0 : w->root[0] > 0 ? w->root[0] / sigma[0] : 1);
+        m[2 * k + 1] = (float)(w->root[0] > 0 ? (k ? w->root[2] : w->root[1]) / sigma[k] : k);
     }
     const double phi = TWO_PI * azimuth / t->azimuths;
     for (uint32_t i = 0; i < t->cosines; i++, rgb += 3) {
@@ -117,7 +117,7 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     *t = (mu_albedo_table){.cosines = 64, .azimuths = 96, .sigmas = {1, 1}};
     if (!(material->plan.needs & MUSURF_NEEDS_TANGENT)) t->azimuths = 1;
     work w = {.table = t, .material = material, .map = map, .lobe = low};
-    if (map) {
+    if (map && low->sigma[1] > 0) { /* else there is no M that makes it of a mirror: the identity stands for all */
         w.root[0] = sqrt(still->xx), w.root[1] = still->xx > 0 ? still->xy / w.root[0] : 0;
         w.root[2] = sqrt(fmax(still->yy - w.root[1] * w.root[1], 0));
         place_sigmas(t, low, high);

@@ -83,7 +83,11 @@ class Plot(unittest.TestCase):
             file = pathlib.Path(folder, "lobe.svg")
             done = musurf("ibl", "plot", "-o", file, stdin=json.dumps({**ASK, "N": 0}))
             self.assertEqual((done.returncode, file.exists()), (2, False))
-        self.assertIn("$.N", done.err)
+            self.assertIn("$.N", done.err)
+            file.write_text(json.dumps(ASK))
+            done = musurf("ibl", "plot", file, "-o", file)
+            self.assertEqual((done.returncode, file.read_text()), (2, json.dumps(ASK)))
+            self.assertIn("would replace", done.err)
 
 
 if __name__ == "__main__":

@@ -179,6 +179,16 @@ class Prefilter(unittest.TestCase):
         self.assertIn("too few", musurf("ibl", "prefilter", self.env, "-o", self.out).err)
         self.assertFalse(self.out.exists())
 
+    def test_the_image_stays(self):
+        """An environment is not replaced by what is made of it, whatever the name that it is reached by."""
+        exr.write(self.env, sky(directions(16, 32)))
+        before = self.env.read_bytes()
+        self.out.symlink_to(self.env)
+        for name in (self.env, self.out):
+            done = musurf("ibl", "prefilter", self.env, "-o", name, "--samples", 16)
+            self.assertEqual((done.returncode, self.env.read_bytes() == before), (2, True), done.err)
+            self.assertIn("would replace", done.err)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,7 @@
 /* command_ibl_plot.c: `musurf ibl plot`, what `musurf ibl axis` answers to one line, as a picture. */
 #include "core/render/command_ibl.h"
 #include "core/render/ibl_picture.h"
+#include "core/render/inputs.h"
 #include "core/render/output_stream.h"
 #include "core/render/options.h"
 
@@ -26,7 +27,8 @@ static _Bool draw(const char *input, const char *output, mu_error *error) {
     mu_document document = {0};
     mu_output_stream stream;
     mu_ibl_question ask;
-    _Bool good = mu_output_check(output, error) && mu_document_read(&document, input, error);
+    _Bool good = mu_output_check(output, error) && mu_input_keep(output, input, error) &&
+                 mu_document_read(&document, input, error);
     if (good) {
         const mu_place root = mu_place_root(&document);
         good = mu_ibl_ask(&root, &ask, error);

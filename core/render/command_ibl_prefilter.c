@@ -8,6 +8,7 @@
 
 #include "core/render/command_ibl.h"
 #include "core/render/ibl_prefilter.h"
+#include "core/render/inputs.h"
 #include "core/render/json_out.h"
 #include "core/render/options.h"
 #include "core/render/output.h"
@@ -107,7 +108,8 @@ static int answer(mu_prefilter *job, int progress) {
     _Bool kept = 0;
     job->context = &t;
     if (bar || progress == JSON) job->progress = show;
-    const _Bool good = mu_output_check(job->output, &error) && mu_prefilter_run(job, &kept, &error);
+    const _Bool good = mu_output_check(job->output, &error) && mu_input_keep(job->output, job->image, &error) &&
+                       mu_prefilter_run(job, &kept, &error);
     if (bar) fputs("\r\033[K", stderr);
     if (!good) return mu_refuse(&usage, "%s", error.text);
     tell_end(&t, job, kept);

@@ -21,6 +21,10 @@ _Bool mu_is_same_file(const char *output, const char *input) {
            a.st_ino == b.st_ino;
 }
 
+_Bool mu_input_keep(const char *output, const char *input, mu_error *error) {
+    return !mu_is_same_file(output, input) || mu_fail(error, "%s: would replace %s, which is read", output, input);
+}
+
 static _Bool keep(const mu_walk *walk, const char *file) {
     for (size_t i = 0; i < walk->count; ++i)
         if (mu_is_same_file(walk->outputs[i], file))

@@ -13,6 +13,8 @@
 
 /* Whether writing `output` would replace `input`: both are there, and one file. Either may be NULL. */
 _Bool mu_is_same_file(const char *output, const char *input);
+/* Fails if it would. */
+_Bool mu_input_keep(const char *output, const char *input, mu_error *error);
 /* Fails if one of the outputs, of which some may be NULL, would replace the scene's file or what it names. */
 _Bool mu_inputs_keep(const mu_document *scene, const char *const *outputs, size_t count, mu_error *error);
 

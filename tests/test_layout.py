@@ -31,7 +31,7 @@ ALLOWED = {
     "scripts/page/": ("scripts/page/", "core/bsdf/", "core/ibl/", "core/render/light_parts.h"),
     "tests/": ("core/", "plugin/", "tests/"),
 }
-TOP_LEVEL = {"plugin", "core", "scenes", "tests", "scripts", "Makefile", "README.md", "LICENSE", "CHANGELOG.md"}
+TOP_LEVEL = {"plugin", "core", "scenes", "tests", "scripts", "Makefile", "README.md", "LICENSE", "CHANGELOG.md", "docs"}
 
 
 class Layout(unittest.TestCase):
@@ -82,8 +82,16 @@ class Layout(unittest.TestCase):
                 continue
             text = file.read_text(errors="replace")
             for pattern in (r"(?<!no )(?<!No )-ffast-math(?! is never)", r"/root/|/home/\w+/"):
-                if re.search(pattern, text) and file.name not in {"README.md", "CHANGELOG.md"}:
+                if re.search(pattern, text) and file.suffix != ".md":
                     wrong.append(f"{file.relative_to(ROOT)}: {pattern}")
+        self.assertEqual(wrong, [])
+
+    def test_pages_link_to_what_is_there(self):
+        wrong = []
+        for file in [file for file in FILES if file.suffix == ".md"]:
+            for link in re.findall(r"\]\((?!https?:|#)([^)#]+)", file.read_text()):
+                if not (file.parent / link).exists():
+                    wrong.append(f"{file.relative_to(ROOT)}: {link}")
         self.assertEqual(wrong, [])
 
 

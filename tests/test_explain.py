@@ -208,7 +208,7 @@ class Explain(unittest.TestCase):
     def test_page_and_info_list_the_same(self):
         listed = json.loads(musurf("info", "--json").out)["features"]
         self.assertEqual(list(listed), LISTED)
-        block = (ROOT / "docs/rendering.md").read_text().split("<!-- features: begin -->\n")[1].split("<!-- features: end -->")[0]
+        block = (ROOT / "core/render/README.md").read_text().split("<!-- features: begin -->\n")[1].split("<!-- features: end -->")[0]
         self.assertEqual(re.findall(r"^\| (\w+) \| (.*) \|$", block, re.M)[1:], list(listed.items()))
 
     def test_unused_definitions_cost_nothing(self):

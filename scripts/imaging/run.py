@@ -84,7 +84,7 @@ def main(arguments, build):
                                      "failed; 2: wrong usage; 130: interrupted.")
     parser.add_argument("--quick", action="store_true", help="four small spheres: to see that it works")
     parser.add_argument("-o", metavar="DIR", dest="output", default=str(build / "ibl"))
-    parser.add_argument("--readme", action="store_true", help="write the table into README.md and the picture into scenes/ibl, too")
+    parser.add_argument("--readme", action="store_true", help="write the table into core/ibl/README.md and the picture into scenes/ibl, too")
     parser.add_argument("--from", metavar="FILE", dest="again", help="an ibl.json, for --readme without measuring again")
     options = parser.parse_args(arguments)
     options.command = " ".join(["scripts/ibl", *arguments])

@@ -132,7 +132,7 @@ class Render(unittest.TestCase):
                                      (ball(microfacet(ndf="gtr", gamma={"expression": "1 + u"})), STUDIO, "blended"),
                                      (ball(microfacet(alpha=0.2)), {"type": "directional"}, "around")):
             done = self.render("major-axis", objects, light, [0, -0.98, 0.2], good=False)
-            self.assertNotEqual(done.returncode, 0)
+            self.assertEqual(done.returncode, 2)
             self.assertIn(word, done.err)
 
 

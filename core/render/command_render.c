@@ -17,6 +17,7 @@
 #include "core/render/command.h"
 #include "core/render/explain.h"
 #include "core/render/image.h"
+#include "core/render/image_light.h"
 #include "core/render/inputs.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
@@ -287,7 +288,8 @@ static int run(mu_job *job, int argc, char **argv) {
     mu_error error = new_error(job);
     const int named = options->output ? name_files(job, argc, argv) : MU_EXIT_OK;
     if (named != MU_EXIT_OK) return named;
-    if (!read_scene(job, &error) || (options->output && !keep_inputs(job, &error)))
+    if (!read_scene(job, &error) ||
+        (options->output && !(keep_inputs(job, &error) && mu_image_light_takes(&job->scene, &error))))
         return complain(job, &error, MU_EXIT_REFUSED);
 
     const uint32_t limit = options->samples                             ? (uint32_t)options->samples

@@ -168,10 +168,13 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
     return good;
 }
 
-static _Bool lights_around(const mu_scene *scene, mu_error *error) {
-    for (uint32_t i = 0; i < scene->light_count; i++)
+_Bool mu_image_light_takes(const mu_scene *scene, mu_error *error) {
+    mu_lobe_source source;
+    for (uint32_t i = 0; scene->integrator.by_image && i < scene->light_count; i++)
         if (scene->lights[i].kind == MU_DIRECTIONAL || scene->lights[i].kind == MU_POINT || scene->lights[i].kind == MU_RECTANGLE_LIGHT)
             return mu_fail(error, "light %u is no light around the scene: only --integrator path renders it", i);
+    for (uint32_t m = 0; scene->integrator.by_image && m < scene->material_count; m++)
+        if (!mu_lobe_source_make(&source, &scene->materials[m], error)) return 0;
     return 1;
 }
 
@@ -192,7 +195,7 @@ mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, m
         mu_fail(error, "not enough memory");
         return NULL;
     }
-    if (lights_around(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
+    if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
         (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error))) {
         mu_image_light_choose(light, &tracer->scene->integrator);
         return light;

@@ -15,8 +15,10 @@
 
 typedef struct mu_image_light mu_image_light;
 
-/* For a tracer whose scene has a technique. NULL on failure: a light that is nowhere around, or a material whose lobe is not
- * known, refracts or is blended. */
+/* Whether a scene with a technique is one that it lights: not with a light that is nowhere around, or a material whose lobe
+ * is not known, refracts or is blended. A scene without one always is. */
+_Bool mu_image_light_takes(const mu_scene *scene, mu_error *error);
+/* For a tracer whose scene has a technique. NULL on failure: what is not taken, or memory. */
 mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error);
 /* Another technique, of a light that was made: nothing is made anew. Not while others use it. */
 void mu_image_light_choose(mu_image_light *image_light, const mu_integrator_settings *settings);

@@ -27,6 +27,12 @@ typedef struct mu_ibl_globe {
 size_t mu_ibl_globe_floats(size_t levels, const size_t *sides);
 void mu_ibl_globe_lay(mu_ibl_globe *globe, size_t levels, const size_t *sides, float *memory);
 
+/* The chain that reads are made of, from a square of the side `side`, a power of two of MU_IBL_CHAIN_LEAST or more: how many levels,
+ * their sides, and how many taps level l >= 1 is worth, MU_IBL_CHAIN_TAPS at most. */
+enum { MU_IBL_CHAIN_LEAST = 32, MU_IBL_CHAIN_TAPS = 384 };
+size_t mu_ibl_chain_sides(size_t side, size_t sides[MU_IBL_LEVELS_MOST]);
+size_t mu_ibl_chain_taps(size_t level);
+
 /* The texel in a row and column; the direction of place (x, y) in [0, 1]². */
 static inline float *mu_ibl_texel(const mu_ibl_square *square, size_t row, size_t column) {
     return square->texels + 4 * ((row + 1) * (square->side + 2) + column + 1);

@@ -4,12 +4,7 @@
  * filtered.c: by filtered importance sampling (prefilter.h) from a chain of halves.
  *
  * The sharpest square has twice as many texels a side as the image has rows, whose solid angles then are 0.2 to 1 of a
- * pixel's at the horizon. It has log2 of that and half as many levels again: between two of the sharpest, whose texels are larger
- * than the lobe, reads interpolate worst. Each is as coarse as its lobe allows: a texel, (4 pi)^1/2 / side wide at the mean, is FINENESS
- * of its alpha at most, an eighth to a quarter of the lobe's width (2 alpha to either side), and there are 32 at least. What is small stays in the
- * processor's caches, where most of a read's time goes.
- *
- * A lobe of few texels needs few taps; of the others some are needed, or lamps that are a pixel small leave a pattern.
+ * pixel's at the horizon. The others are those of mu_ibl_chain_sides.
  */
 #include "core/render/filtered.h"
 
@@ -19,10 +14,7 @@
 
 #include "core/render/surface_rows.h"
 
-enum { LEAST = 32, MOST = 1024, FINE = 2 };
-#define FINENESS 0.8
-static const size_t taps_of[] = {0, 96, 192, 384}; /* of levels; of all beyond: the last */
-enum { TAPS = 384 };
+enum { LEAST = MU_IBL_CHAIN_LEAST, MOST = 1024, FINE = 2 };
 
 static size_t side_of(const mu_lights *lights) {
     size_t side = LEAST;
@@ -30,31 +22,14 @@ static size_t side_of(const mu_lights *lights) {
     return side;
 }
 
-/* log2 of a power of two */
-static size_t exponent(size_t side) {
-    size_t n = 0;
-    while (side >> (n + 1)) n++;
-    return n;
-}
-
 size_t mu_filtered_levels(const mu_lights *lights) {
-    return exponent(side_of(lights)) * 3 / 2 + 1;
-}
-
-/* Sides of the levels of a chain that starts with `side`. */
-static void sides_of(size_t side, size_t levels, size_t sides[MU_IBL_LEVELS_MOST]) {
-    const double whole = sqrt(4 * 3.14159265358979323846);
-    for (size_t l = 0; l < levels; l++) {
-        const double linear = (double)l / (double)(levels - 1);
-        sides[l] = l ? LEAST : side;
-        while (l && sides[l] < side && (double)sides[l] * FINENESS * linear * linear < whole) sides[l] *= 2;
-    }
+    size_t sides[MU_IBL_LEVELS_MOST];
+    return mu_ibl_chain_sides(side_of(lights), sides);
 }
 
 size_t mu_filtered_bytes(const mu_lights *lights) {
     size_t sides[MU_IBL_LEVELS_MOST];
-    const size_t levels = mu_filtered_levels(lights);
-    sides_of(side_of(lights), levels, sides);
+    const size_t levels = mu_ibl_chain_sides(side_of(lights), sides);
     return sizeof(float) * mu_ibl_globe_floats(levels, sides);
 }
 
@@ -90,25 +65,23 @@ static void filter_row(void *context, uint32_t row) {
 }
 
 static void filter(mu_ibl_globe *globe, const mu_ibl_globe *from, uint32_t threads) {
-    mu_ibl_tap taps[TAPS];
+    mu_ibl_tap taps[MU_IBL_CHAIN_TAPS];
     const size_t side = from->level[0].side;
     /* rows of a latitude-longitude image whose pixels are as large: those of (pi / rows)² are 4 pi / side² */
     const size_t rows = (size_t)lround((double)side * sqrt(3.14159265358979323846) / 2);
     for (size_t l = 1; l < globe->levels; l++) {
         const double linear = (double)l / (double)(globe->levels - 1);
         level_work w = {.from = from, .tap = taps, .to = &globe->level[l]};
-        const size_t most = sizeof taps_of / sizeof taps_of[0] - 1;
-        w.taps = mu_ibl_taps((float)(linear * linear), taps_of[l < most ? l : most], rows, from->levels, taps);
+        w.taps = mu_ibl_taps((float)(linear * linear), mu_ibl_chain_taps(l), rows, from->levels, taps);
         mu_rows((uint32_t)w.to->side, threads, filter_row, &w);
         mu_ibl_globe_border(w.to);
     }
 }
 
 float *mu_filtered_make(mu_ibl_globe *globe, const mu_lights *lights, uint32_t threads, mu_error *error) {
-    const size_t side = side_of(lights), levels = mu_filtered_levels(lights), halves = exponent(side) - 1;
-    size_t sides[MU_IBL_LEVELS_MOST], half[MU_IBL_LEVELS_MOST];
-    sides_of(side, levels, sides);
-    for (size_t l = 0; l < halves; l++) half[l] = side >> l;
+    size_t sides[MU_IBL_LEVELS_MOST], half[MU_IBL_LEVELS_MOST], halves = 0;
+    const size_t side = side_of(lights), levels = mu_ibl_chain_sides(side, sides);
+    for (; side >> halves >= 4; halves++) half[halves] = side >> halves;
     const size_t floats = mu_ibl_globe_floats(levels, sides);
     /* rounded up: aligned memory comes in multiples of its alignment */
     float *memory = aligned_alloc(64, (floats * sizeof *memory + 63) / 64 * 64);

@@ -10,7 +10,7 @@
 #include "core/render/light_parts.h"
 #include "scripts/page/material.h"
 
-enum { LEAST = 32, TAPS = 192, FINE = 2 };
+enum { FINE = 2 };
 
 typedef void radiance(const float w[3], float rgb[3]);
 
@@ -71,11 +71,11 @@ static void fill(mu_ibl_square *to, radiance *of) {
 }
 
 static void filter(mu_ibl_globe *globe, const mu_ibl_globe *from) {
-    mu_ibl_tap taps[TAPS];
+    mu_ibl_tap taps[MU_IBL_CHAIN_TAPS];
     const size_t rows = (size_t)lround((double)from->level[0].side * sqrt(3.14159265358979323846) / 2);
     for (size_t l = 1; l < globe->levels; l++) {
         const double linear = (double)l / (double)(globe->levels - 1);
-        const size_t count = mu_ibl_taps((float)(linear * linear), TAPS, rows, from->levels, taps);
+        const size_t count = mu_ibl_taps((float)(linear * linear), mu_ibl_chain_taps(l), rows, from->levels, taps);
         for (size_t row = 0; row < globe->level[l].side; row++)
             mu_ibl_globe_filter_row(from, count, taps, row, &globe->level[l]);
         mu_ibl_globe_border(&globe->level[l]);
@@ -84,12 +84,12 @@ static void filter(mu_ibl_globe *globe, const mu_ibl_globe *from) {
 
 page_surroundings *page_surroundings_new(int kind, int size) {
     const size_t side = (size_t)size;
-    size_t levels = 0;
-    while (side >> (levels + 1)) levels++;
-    const size_t floats = mu_ibl_globe_floats(side, LEAST, levels), halves = levels - 1;
+    size_t sides[MU_IBL_LEVELS_MOST], half[MU_IBL_LEVELS_MOST], halves = 0;
+    const size_t levels = mu_ibl_chain_sides(side, sides);
+    for (; side >> halves >= 4; halves++) half[halves] = side >> halves;
     page_surroundings *s = calloc(1, sizeof *s);
-    float *sharp = aligned_alloc(16, mu_ibl_globe_floats(side, 4, halves) * sizeof *sharp);
-    if (s) s->memory = aligned_alloc(16, floats * sizeof *s->memory);
+    float *sharp = aligned_alloc(16, mu_ibl_globe_floats(halves, half) * sizeof *sharp);
+    if (s) s->memory = aligned_alloc(16, mu_ibl_globe_floats(levels, sides) * sizeof *s->memory);
     if (!s || !sharp || !s->memory) {
         free(sharp);
         if (s) free(s->memory);
@@ -97,8 +97,8 @@ page_surroundings *page_surroundings_new(int kind, int size) {
         return NULL;
     }
     mu_ibl_globe from;
-    mu_ibl_globe_lay(&s->globe, side, LEAST, levels, s->memory);
-    mu_ibl_globe_lay(&from, side, 4, halves, sharp);
+    mu_ibl_globe_lay(&s->globe, levels, sides, s->memory);
+    mu_ibl_globe_lay(&from, halves, half, sharp);
     fill(&from.level[0], kinds[kind]);
     for (size_t l = 1; l < halves; l++) mu_ibl_globe_halve(&from.level[l - 1], &from.level[l]);
     memcpy(s->memory, sharp, 4 * (side + 2) * (side + 2) * sizeof *sharp);

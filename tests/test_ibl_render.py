@@ -100,6 +100,14 @@ class Render(unittest.TestCase):
                 seen = self.render(by, ball, {"type": "constant"}, [0.3, -0.9, 0.3], size=8)
                 self.assertLess(numpy.abs(seen - 1).max(), 1e-5, (mirror, by))
 
+    def test_usual_reads(self):
+        """Where nobody says how many: 16, and of lobes the 10 that take as long."""
+        ball = [{"shape": "sphere", "radius": 1, "material": ggx(0.4, 0.8)}]
+        for by, usual in (("major-axis", 16), ("lobe", 10)):
+            left, said, other = (self.render(by, ball, STUDIO, [0, -1, 0.2], size=8, integrator=more) for more in ({}, {"reads": usual}, {"reads": 26 - usual}))
+            self.assertTrue((left == said).all())
+            self.assertGreater(numpy.abs(left - other).max(), 0)
+
     def test_against_paths(self):
         """A sphere of Figure 19: mean FLIP of the major axis is below that of the bent normal for alpha_lin < 0.5, and of reads all over
         the lobe below half of the major axis'; as many as each pixel needs are no worse than a fixed number by more than a

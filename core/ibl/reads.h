@@ -42,6 +42,8 @@ enum { MU_IBL_TAIL = 33 };
 enum { MU_IBL_PHASES = 4 };
 /* How many reads are chosen at most, where their number is. */
 enum { MU_IBL_READS_CHOSEN = 33 };
+/* How many of MU_IBL_LOBE take a frame as long as the usual 16 along the axis, measured (`make ibl`): where nobody says. */
+enum { MU_IBL_READS_OF_LOBE = 10 };
 
 /* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c); of MU_IBL_FILTERED (importance.c). */
 typedef struct mu_ibl_spread {

@@ -178,8 +178,15 @@ _Bool mu_image_light_takes(const mu_scene *scene, mu_error *error) {
     return 1;
 }
 
+static size_t reads_of(const mu_integrator_settings *settings) {
+    const _Bool lobe = settings->technique == MU_IBL_LOBE;
+    if (settings->reads == MU_READS_USUAL && lobe) return MU_IBL_READS_OF_LOBE;
+    if (settings->reads == MU_READS_USUAL || (!settings->reads && !lobe)) return mu_ibl_settings_default_f().samples;
+    return settings->reads;
+}
+
 void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *settings) {
-    const size_t reads = settings->reads || settings->technique == MU_IBL_LOBE ? settings->reads : mu_ibl_settings_default_f().samples;
+    const size_t reads = reads_of(settings);
     light->means = settings->means;
     const mu_ibl_settings_f own = {settings->k, settings->beta, reads, settings->appendix_c};
     for (uint32_t m = 0; m < light->count; m++) {

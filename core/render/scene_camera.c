@@ -106,7 +106,7 @@ _Bool mu_read_integrator(mu_reader *reader) {
     const mu_place place = mu_place_member(&reader->root, "integrator");
     const mu_ibl_settings_f axis = mu_ibl_settings_default_f();
     *integrator = (mu_integrator_settings){
-        .depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = 16, .k = axis.k, .beta = axis.beta, .tails = 1, .means = 1, .seed = 0};
+        .depth = 8, .roulette = 4, .samples = 64, .light_cells = 2, .reads = MU_READS_USUAL, .k = axis.k, .beta = axis.beta, .tails = 1, .means = 1, .seed = 0};
     if (!place.value) return 1;
     if (!mu_place_only(&place, mu_scene_keys(MU_KEYS_INTEGRATOR), error) ||
         !mu_read_count(&place, "samples", 1, 1 << 24, &integrator->samples, error) ||

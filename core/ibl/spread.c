@@ -150,9 +150,11 @@ void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *setti
 
 void mu_ibl_plan_tail(mu_ibl_plan *plan, const float *tail) {
     if (plan->technique != MU_IBL_LOBE) return;
-    plan->tailed = 1;
-    for (size_t i = 0; i < MU_IBL_TAIL; i++) plan->tail[i] = tail[i];
-    spread_all(plan, tail);
+    for (size_t i = 0; i < MU_IBL_TAIL; i++) {
+        plan->tail[i] = tail[i];
+        plan->tailed = plan->tailed || fabs(tail[i] - 1) > (float)1e-3; /* else it is GGX's */
+    }
+    if (plan->tailed) spread_all(plan, tail);
 }
 
 #endif

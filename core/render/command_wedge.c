@@ -14,6 +14,7 @@
 #include "core/render/command.h"
 #include "core/render/contact_sheet.h"
 #include "core/render/image.h"
+#include "core/render/image_light.h"
 #include "core/render/inputs.h"
 #include "core/render/output.h"
 #include "core/render/render_progress.h"
@@ -209,7 +210,9 @@ static _Bool try_all(mu_wedge *wedge, mu_error *error) {
         choose(wedge, cell, which);
         if (!read_cell(wedge, which, &scene, error)) return 0;
         const mu_film_settings film = scene.film;
+        const _Bool taken = mu_image_light_takes(&scene, error);
         mu_scene_free(&scene);
+        if (!taken) return 0;
         char *const file = wedge->cells ? cell_file(wedge, cell) : NULL;
         const char *const outputs[] = {wedge->render.output, wedge->render.png, file};
         const _Bool kept = mu_inputs_keep(&wedge->document, outputs, sizeof outputs / sizeof *outputs, error);

@@ -192,7 +192,7 @@ void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *
     for (uint32_t m = 0; m < light->count; m++) {
         lit_material *material = &light->materials[m];
         mu_ibl_plan_make(settings->technique, &own, &material->plan);
-        if (settings->tails && material->source.tailed) mu_ibl_plan_tail(&material->plan, material->source.tail);
+        if (settings->tails) mu_ibl_plan_tail(&material->plan, material->source.tail);
     }
 }
 

@@ -29,12 +29,9 @@ _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named
     const mu_ibl_slopes own = {{s->mean[0], s->mean[1]}, s->xx, s->xy, s->yy};
     source->map = varies ? map : NULL;
     source->lobe = mu_ibl_lobe_of_f(&own);
-    source->tailed = 0;
     const _Bool told = slopes->size > offsetof(musurf_slopes, tail) && slopes->tail;
-    for (size_t i = 0; i < MU_IBL_TAIL; i++) {
+    for (size_t i = 0; i < MU_IBL_TAIL; i++)
         source->tail[i] = told ? (float)slopes->tail(m->compiled, (double)i / (MU_IBL_TAIL - 1)) : 1;
-        source->tailed = source->tailed || fabsf(source->tail[i] - 1) > 1e-3f;
-    }
     return 1;
 }
 

@@ -16,7 +16,6 @@ typedef struct mu_lobe_source {
     musurf_moments moments; /* before M, where it varies */
     mu_ibl_lobe_f lobe;     /* where it does not */
     float tail[MU_IBL_TAIL];
-    _Bool tailed; /* that is not GGX's */
 } mu_lobe_source;
 
 _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named, mu_error *error);

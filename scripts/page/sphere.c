@@ -71,6 +71,10 @@ void page_sphere_set(page_sphere *s, const page_material *material, const page_s
     /* until there are samples, and without light around: the major axis */
     mu_ibl_plan_make(s->technique < SAMPLED ? (mu_ibl_technique)s->technique : MU_IBL_MAJOR_AXIS, &in_float,
                      &s->plan);
+    float tail[MU_IBL_TAIL];
+    for (int i = 0; i < MU_IBL_TAIL; i++)
+        tail[i] = (float)mu_ibl_tail_of(&material->definition, (double)i / (MU_IBL_TAIL - 1));
+    mu_ibl_plan_tail(&s->plan, tail);
     s->turn[0] = (float)cos(numbers[TURN]), s->turn[1] = (float)sin(numbers[TURN]);
     s->exposure = (float)numbers[EXPOSURE];
     for (int k = 0; k < 3; k++) s->lamp[k] = (float)numbers[LAMP_X + k];

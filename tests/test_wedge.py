@@ -108,6 +108,10 @@ class Wedge(unittest.TestCase):
         for arguments in ((), ("--vary", "gamma=1"), ("--vary", "gamma=1", "-o", "/nowhere/s.exr"),
                           ("--vary", "gamma=1", "--cells", self.scene), (self.scene, "--vary", "gamma=1")):
             self.assertEqual(self.wedge(*arguments).returncode, 2)
+        self.scene.write_text(json.dumps(dict(SCENE, integrator={"by": "lobe"}, lights=[{"type": "directional", "direction": [0, 0, -1]}])))
+        done = self.wedge("--vary", "gamma=1:2", *out)
+        self.assertEqual((done.returncode, done.err.count("\n")), (2, 1), done.err)
+        self.assertIn("only --integrator path renders it", done.err)
         sky = self.folder / "0002.exr"
         for arguments, words in ((("-o", self.folder / "s.png"), "ends in .exr"), (("--png", self.scene), "ends in .png"),
                                  (("-o", sky), "of which the scene is made"), (("--cells", self.folder), "of which the scene is made")):

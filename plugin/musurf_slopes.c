@@ -25,4 +25,12 @@ static double tail(const musurf_material *material, double share) {
     return mu_ibl_tail_of(&material->parsed.definition, share);
 }
 
-const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail};
+static size_t pieces(const musurf_material *material, const double *m, size_t most, double (*out)[3]) {
+    const mu_definition *d = &material->parsed.definition;
+    if (d->ndf != MU_TABULATED || d->multiple != MU_SINGLE || !material->has_moments || (!m && material->parsed.varying)) return 0;
+    const double *whole = m ? m : d->transform;
+    return material->in_float ? mu_ibl_pieces_f(material->in_float, material->moments.mean, whole, most, out)
+                              : mu_ibl_pieces_d(material->in_double, material->moments.mean, whole, most, out);
+}
+
+const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail, pieces};

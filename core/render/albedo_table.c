@@ -1,100 +1,196 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * albedo_table.c: nodes by an additive lattice (command_ibl_albedo.c); linear between them. Samplers that reject make it random:
- * then a table of many nodes stops, at 2e7 samples in all, short of the accuracy that others have at once.
+ * albedo_table.c: nodes by even_light.c; cubic between them, which four neighbours tell (Lagrange).
  *
- * Albedos of smooth surfaces fall off within a cosine of about alpha from the horizon, and Fresnel's with the fifth power:
- * nodes are even in the cosine's root. Between 64 of them the error is that of (1/63)² / 8 of the second derivative, 3e-4
- * of one of 10. Around, a sine of twice the angle whose height is 1 is met to 1e-3 between 96; albedos move by less.
+ * Where a surface is smooth, its albedo falls off within a cosine of about the slope roughness s along the view: nodes are
+ * even in asinh(root(cosine / s)). Around, roughness along the view rises from the one axis' to the other's within their ratio of a
+ * quarter turn at either end: nodes are even in the azimuth of (sqrt(sigma_U) x, sqrt(sigma_V) y), which widens both ends alike.
+ * Near the horizon albedos go with the cosine's root, at the pole, of a tilt, with the sine: of half the tangents that both
+ * have in common roots are taken. A material that is the same mirrored at the lobe's axes, which is tried out, is asked for a quarter turn; a
+ * tilt and a histogram are not, and have edges of their own: more nodes.
  */
 #include "core/render/albedo_table.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/render/philox.h"
+#include "core/ibl/even.h"
+#include "core/render/even_light.h"
 #include "core/render/surface_rows.h"
 
 #define TWO_PI 6.28318530717958647692
 
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
-#define SIGMA_STEP 0.15f
-enum { SIGMAS_MOST = 12, BATCH = 1024, LEAST_BATCHES = 2 };
+#define SIGMA_STEP 0.5f
+enum { SIGMAS_MOST = 12 };
+/* What a node may be off; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
 #define ENOUGH 2e-4
+enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11, PIECES = 1 << 12 };
 /* The view of the node on the horizon. */
-#define LEAST_COSINE 1e-4
+#define LEAST_COSINE 1e-6f
+/* Roughnesses of which the height of nodes takes notice. */
+#define SMOOTHEST 1e-4f
+#define ROUGHEST  0.5f
 
 typedef struct work {
     const mu_albedo_table *table;
     const mu_material *material;
     const musurf_map *map;
+    const musurf_slopes *slopes;
+    const musurf_moments *still;
     double root[3]; /* of the moments before M: lower triangle; 0: a mirror, which no M makes rough */
     const mu_ibl_lobe_f *lobe;
-    uint32_t most; /* batches */
+    size_t most; /* calls of a node */
 } work;
 
-/* Mean weight of what is reflected: batches of the lattice, each shifted at random, until their means' standard error is
- * ENOUGH, or `most` of them are made. */
-static void mean_weight(const work *w, const float m[4], const float wo[3], uint64_t node, void *closure, float rgb[3]) {
-    static const double step[3] = {0.7548776662466927, 0.5698402909980532, 0.4142135623730950};
-    const musurf_material_type *type = w->material->type;
-    double mean[3] = {0, 0, 0}, square[3] = {0, 0, 0};
-    rgb[0] = rgb[1] = rgb[2] = 0;
-    const uint32_t lobes = w->map ? w->map->setup(w->material->compiled, wo, m, NULL, 0, closure)
-                                  : type->setup(w->material->compiled, wo, NULL, 0, closure);
-    if (!lobes) return;
-    for (uint32_t b = 0; b < w->most; b++) {
-        double shift[3], sum[3] = {0, 0, 0}, worst = 0;
-        mu_philox_uniforms(0, node * 4096 + b, shift);
-        for (uint32_t i = 0; i < BATCH; i++) {
-            float u[3];
-            for (int k = 0; k < 3; k++) {
-                const double place = shift[k] + i * step[k];
-                u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
-            }
-            musurf_sample s;
-            type->sample(closure, u, MUSURF_ALL_LOBES, &s);
-            for (int c = 0; c < 3 && s.lobe; c++) sum[c] += (double)s.weight[c];
-        }
-        for (int c = 0; c < 3; c++) { /* Welford */
-            const double before = sum[c] / BATCH - mean[c];
-            mean[c] += before / (b + 1.0);
-            square[c] += before * (sum[c] / BATCH - mean[c]);
-            worst = fmax(worst, square[c]);
-        }
-        if (b + 1 >= LEAST_BATCHES && worst <= ENOUGH * ENOUGH * (b + 1.0) * b) break;
-    }
-    for (int c = 0; c < 3; c++) rgb[c] = (float)mean[c];
+/* A view in the frame of the lobe's axes: by how it is found in the table. */
+typedef struct place {
+    float height, around; /* 0 to 1 */
+} place;
+
+/* Twice the variance of slopes along the view: alpha² of GGX. */
+static float scale_along(const float sigma[2], float x, float y) {
+    const float flat = x * x + y * y, u = sigma[0] * x, v = sigma[1] * y;
+    const float square = flat > 0 ? 2 * (u * u + v * v) / flat : 2 * sigma[0] * sigma[0];
+    return fminf(fmaxf(sqrtf(square), SMOOTHEST), ROUGHEST);
 }
 
-/* [any] All cosines of an azimuth and two sigmas. */
+static place place_of(const float sigma[2], float x, float y, float z) {
+    const float inverse = 1 / scale_along(sigma, x, y);
+    const float u = sigma[1] > 0 ? sqrtf(sigma[0]) * x : x, v = sigma[1] > 0 ? sqrtf(sigma[1]) * y : y;
+    const float turns = atan2f(v, u) * (float)(1 / TWO_PI), h = z / (1 + sqrtf(x * x + y * y));
+    return (place){asinhf(sqrtf(fmaxf(h, 0) * inverse)) / asinhf(sqrtf(inverse)), turns < 0 ? turns + 1 : turns};
+}
+
+/* And back, to a unit vector. */
+static void view_of(const float sigma[2], place at, float w[3]) {
+    const double angle = TWO_PI * (double)at.around;
+    double x = cos(angle), y = sin(angle);
+    if (sigma[1] > 0) x /= sqrt((double)sigma[0]), y /= sqrt((double)sigma[1]);
+    const double scale = (double)scale_along(sigma, (float)x, (float)y);
+    const double root = sinh((double)at.height * asinh(sqrt(1 / scale))), h = scale * root * root;
+    const double z = fmin(fmax(2 * h / (1 + h * h), (double)LEAST_COSINE), 1);
+    const double flat = sqrt((1 - z) * (1 + z)) / hypot(x, y);
+    w[0] = (float)(flat * x), w[1] = (float)(flat * y), w[2] = (float)z;
+}
+
+/* A closure of the material, for even_light.h. */
+typedef struct bound {
+    const musurf_material_type *type;
+    void *closure;
+} bound;
+
+static void toward(void *context, const double wi[3], double rgb[3]) {
+    const bound *b = context;
+    musurf_value value;
+    b->type->eval(b->closure, (const float[3]){(float)wi[0], (float)wi[1], (float)wi[2]}, MUSURF_ALL_LOBES, &value);
+    for (int c = 0; c < 3; c++) rgb[c] = value.lobes ? (double)value.f[c] : 0;
+}
+
+static void drawn(void *context, const double u[3], double rgb[3]) {
+    const bound *b = context;
+    musurf_sample s;
+    b->type->sample(b->closure, (const float[3]){(float)u[0], (float)u[1], (float)u[2]}, MUSURF_ALL_LOBES, &s);
+    for (int c = 0; c < 3; c++) rgb[c] = s.lobe ? (double)s.weight[c] : 0;
+}
+
+/* The M that makes the slopes' standard deviations `sigma` along x and y: M = diag(1 / sigma) root^T, since then M^-T root root^T
+ * M^-1 is diag(sigma²); and the lobe under it. */
+static void node_map(const work *w, const float sigma[2], float m[4], mu_ibl_lobe_d *lobe) {
+    for (int k = 0; k < 2; k++) {
+        m[2 * k] = (float)(k ? 0 : w->root[0] > 0 ? w->root[0] / (double)sigma[0] : 1);
+        m[2 * k + 1] = (float)(w->root[0] > 0 ? (k ? w->root[2] : w->root[1]) / (double)sigma[k] : k);
+    }
+    const double det = (double)m[0] * (double)m[3], *mean = w->still->mean;
+    *lobe = (mu_ibl_lobe_d){.sigma = {(double)sigma[0], (double)sigma[1]}, .turn = {1, 0}};
+    lobe->mean[0] = (double)m[3] * mean[0] / det;
+    lobe->mean[1] = ((double)m[0] * mean[1] - (double)m[1] * mean[0]) / det;
+}
+
+static size_t pieces_of(const work *w, const float m[4], double (*out)[3]) {
+    const double whole[4] = {(double)m[0], (double)m[1], (double)m[2], (double)m[3]};
+    if (!w->slopes || w->slopes->size <= offsetof(musurf_slopes, pieces) || !w->slopes->pieces) return 0;
+    return w->slopes->pieces(w->material->compiled, w->map ? whole : NULL, PIECES, out);
+}
+
+/* A closure under the M of two sigmas, and what is asked of it. */
+typedef struct seat {
+    float sigma[2], m[4];
+    mu_ibl_lobe_d lobe;
+    bound bound;
+    double (*pieces)[3];
+    mu_even_source source;
+} seat;
+
+static void seat_free(seat *s) {
+    free(s->bound.closure);
+    free(s->pieces);
+}
+
+static _Bool seat_make(const work *w, uint32_t first, uint32_t second, seat *s) {
+    const mu_albedo_table *t = w->table;
+    const mu_ibl_lobe_f *of = w->lobe;
+    *s = (seat){.sigma = {of->sigma[0], of->sigma[1]}, .m = {1, 0, 0, 1}, .bound = {.type = w->material->type}};
+    s->lobe = (mu_ibl_lobe_d){.sigma = {(double)of->sigma[0], (double)of->sigma[1]},
+                              .turn = {(double)of->turn[0], (double)of->turn[1]},
+                              .mean = {(double)of->mean[0], (double)of->mean[1]}};
+    if (w->map) {
+        if (t->sigmas[0] > 1) s->sigma[0] = expf(t->least[0] + (float)first * t->step[0]);
+        if (t->sigmas[1] > 1) s->sigma[1] = expf(t->least[1] + (float)second * t->step[1]);
+        node_map(w, s->sigma, s->m, &s->lobe);
+    }
+    s->bound.closure = aligned_alloc(64, (w->material->plan.closure_bytes + 63u) / 64 * 64);
+    s->pieces = malloc(PIECES * sizeof *s->pieces);
+    if (!s->bound.closure || !s->pieces) {
+        seat_free(s);
+        return 0;
+    }
+    s->source = (mu_even_source){&s->bound, toward, drawn, .lobe = &s->lobe, .slope_count = pieces_of(w, s->m, s->pieces)};
+    if (s->source.slope_count) s->source.slopes = (const double(*)[3])s->pieces;
+    if (w->material->plan.lobes & MUSURF_DELTA_LOBES || !(s->sigma[1] > 0)) s->source.lobe = NULL;
+    return 1;
+}
+
+/* Seen from v, of the lobe's axes: wo; false: black. */
+static _Bool seat_look(const work *w, const seat *s, const float v[3], double wo[3]) {
+    const double *turn = s->lobe.turn, x = (double)v[0], y = (double)v[1];
+    wo[0] = turn[0] * x - turn[1] * y, wo[1] = turn[1] * x + turn[0] * y, wo[2] = (double)v[2];
+    const float seen[3] = {(float)wo[0], (float)wo[1], v[2]};
+    return (w->map ? w->map->setup(w->material->compiled, seen, s->m, NULL, 0, s->bound.closure)
+                   : w->material->type->setup(w->material->compiled, seen, NULL, 0, s->bound.closure)) != 0;
+}
+
+/* [any] All heights of an azimuth and two sigmas. */
 static void fill(void *context, uint32_t row) {
     const work *w = context;
     const mu_albedo_table *t = w->table;
-    const uint32_t azimuth = row % t->azimuths, second = row / t->azimuths % t->sigmas[1],
-                   first = row / t->azimuths / t->sigmas[1];
-    void *const closure = aligned_alloc(64, (w->material->plan.closure_bytes + 63u) / 64 * 64);
-    float *rgb = t->rgb + (size_t)3 * row * t->cosines;
-    float m[4];
-    const double sigma[2] = {exp((double)(t->least[0] + (float)first * t->step[0])),
-                             exp((double)(t->least[1] + (float)second * t->step[1]))};
-    /* M = diag(1 / sigma) root^T: then M^-T root root^T M^-1 is diag(sigma²) */
-    for (int k = 0; k < 2; k++) {
-        m[2 * k] = (float)(k ? 0 : w->root[0] > 0 ? w->root[0] / sigma[0] : 1);
-        m[2 * k + 1] = (float)(w->root[0] > 0 ? (k ? w->root[2] : w->root[1]) / sigma[k] : k);
+    const uint32_t azimuth = row % t->rows, second = row / t->rows % t->sigmas[1], first = row / t->rows / t->sigmas[1];
+    float *rgb = t->rgb + (size_t)3 * row * t->heights;
+    seat s;
+    const _Bool made = seat_make(w, first, second, &s);
+    mu_even_effort effort = {ENOUGH, w->most, 0};
+    for (uint32_t i = 0; i < t->heights; i++, rgb += 3) {
+        float v[3];
+        double wo[3];
+        rgb[0] = rgb[1] = rgb[2] = made ? 0 : NAN;
+        if (!made) continue;
+        view_of(s.sigma, (place){(float)i / (float)(t->heights - 1), (float)azimuth / (float)t->azimuths}, v);
+        if (!seat_look(w, &s, v, wo)) continue;
+        const mu_even_mean mean = mu_even_light(&s.source, wo, &effort);
+        for (int c = 0; c < 3; c++) rgb[c] = (float)mean.rgb[c];
     }
-    const double phi = TWO_PI * azimuth / t->azimuths;
-    for (uint32_t i = 0; i < t->cosines; i++, rgb += 3) {
-        const double z = fmax((double)i * i / ((t->cosines - 1.0) * (t->cosines - 1.0)), LEAST_COSINE),
-                     flat = sqrt((1 - z) * (1 + z));
-        const float x = (float)(flat * cos(phi)), y = (float)(flat * sin(phi));
-        const float *turn = w->lobe->turn;
-        const float wo[3] = {w->map ? x : turn[0] * x - turn[1] * y, w->map ? y : turn[1] * x + turn[0] * y, (float)z};
-        if (closure) mean_weight(w, m, wo, (uint64_t)row * t->cosines + i, closure, rgb);
-        else rgb[0] = rgb[1] = rgb[2] = NAN;
-    }
-    free(closure);
+    if (made) seat_free(&s);
+}
+
+/* f of a view and a direction of light, both mirrored at U (1), at V (2) or both (3), of the lobe's axes. */
+static double mirrored(const work *w, const seat *s, const float v[3], const float l[3], int at) {
+    double wo[3], rgb[3];
+    const double *turn = s->lobe.turn, x = (double)(at & 2 ? -l[0] : l[0]), y = (double)(at & 1 ? -l[1] : l[1]);
+    if (!seat_look(w, s, (const float[3]){at & 2 ? -v[0] : v[0], at & 1 ? -v[1] : v[1], v[2]}, wo)) return 0;
+    toward(s->source.context,
+           (const double[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, (double)l[2]}, rgb);
+    return rgb[0] + rgb[1] + rgb[2];
 }
 
 static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high) {
@@ -105,29 +201,59 @@ static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_
             t->least[k] += range / 2;
             continue;
         }
-        const float wanted = ceilf(range / SIGMA_STEP) + 1;
+        const float wanted = fmaxf(ceilf(range / SIGMA_STEP) + 1, 4);
         t->sigmas[k] = wanted < SIGMAS_MOST ? (uint32_t)wanted : SIGMAS_MOST;
         t->step[k] = range / (float)(t->sigmas[k] - 1);
     }
 }
 
+/* Do mirrors at the lobe's axes leave the material as it is? Light comes from all over the lobe, at which float is right to 1e-4. */
+static _Bool is_even(const work *w) {
+    enum { VIEWS = 4, LIGHTS = 34 };
+    seat s;
+    if (!seat_make(w, 0, 0, &s)) return 0;
+    _Bool even = s.source.lobe && !s.source.slopes;
+    for (int i = 0; even && i < VIEWS * LIGHTS; i++) {
+        float v[3];
+        double wo[3], u[2], wi[3];
+        view_of(s.sigma, (place){(float)(i / LIGHTS + 1) / (VIEWS + 1), 0.07f + (float)(i / LIGHTS) * 0.3f}, v);
+        if (!seat_look(w, &s, v, wo)) continue;
+        mu_ibl_even directions;
+        mu_ibl_even_make(&s.lobe, wo, &directions);
+        mu_ibl_fibonacci_at(mu_ibl_fibonacci_below(LIGHTS), (const double[2]){0, 0}, (uint32_t)(i % LIGHTS), u);
+        if (!(mu_ibl_even_direction(&directions, u, wi) > 0)) continue;
+        const double *turn = s.lobe.turn;
+        const float l[3] = {(float)(turn[0] * wi[0] + turn[1] * wi[1]), (float)(turn[0] * wi[1] - turn[1] * wi[0]), (float)wi[2]};
+        const double f = mirrored(w, &s, v, l, 0);
+        for (int at = 1; at < 4; at++) even = even && fabs(mirrored(w, &s, v, l, at) - f) <= 1e-2 * f;
+    }
+    seat_free(&s);
+    return even;
+}
+
 _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
                            uint32_t threads, mu_error *error) {
-    *t = (mu_albedo_table){.cosines = 64, .azimuths = 96, .sigmas = {1, 1}};
-    if (!(material->plan.needs & MUSURF_NEEDS_TANGENT)) t->azimuths = 1;
-    work w = {.table = t, .material = material, .map = map, .lobe = low};
+    *t = (mu_albedo_table){.heights = 64, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
+    work w = {.table = t, .material = material, .map = map, .still = still, .lobe = low};
+    w.slopes = material->type->extension ? material->type->extension(MUSURF_SLOPES_ID) : NULL;
     if (map && low->sigma[1] > 0) { /* else there is no M that makes it of a mirror: the identity stands for all */
         w.root[0] = sqrt(still->xx), w.root[1] = still->xx > 0 ? still->xy / w.root[0] : 0;
         w.root[2] = sqrt(fmax(still->yy - w.root[1] * w.root[1], 0));
         place_sigmas(t, low, high);
     }
-    if (t->sigmas[0] * t->sigmas[1] > 1) t->cosines = 32, t->azimuths = 24;
-    const uint32_t nodes = t->sigmas[0] * t->sigmas[1] * t->azimuths * t->cosines, affordable = (1u << 14) / nodes;
-    w.most = affordable < LEAST_BATCHES ? LEAST_BATCHES : affordable < 512 ? affordable : 512;
+    const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
+    if (varies) t->heights = 32;
+    if (material->plan.needs & MUSURF_NEEDS_TANGENT) {
+        const _Bool even = is_even(&w);
+        t->azimuths = varies ? 64 : even ? 128 : 256;
+        t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
+    }
+    const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;
+    w.most = CALLS / nodes > LEAST_CALLS ? CALLS / nodes : LEAST_CALLS;
     t->rgb = malloc(mu_albedo_table_bytes(t));
     if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
-    mu_rows(t->sigmas[0] * t->sigmas[1] * t->azimuths, threads, fill, &w);
+    mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
     for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
         if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
     return 1;
@@ -139,44 +265,65 @@ void mu_albedo_table_free(mu_albedo_table *t) {
 }
 
 size_t mu_albedo_table_bytes(const mu_albedo_table *t) {
-    return 3 * sizeof(float) * t->cosines * t->azimuths * t->sigmas[0] * t->sigmas[1];
+    return 3 * sizeof(float) * t->heights * t->rows * t->sigmas[0] * t->sigmas[1];
 }
 
-/* A node and the share of the one after it. */
-typedef struct place {
-    uint32_t node;
-    float share;
-} place;
+/* Up to four nodes, from `first` on, and their weights. */
+typedef struct stencil {
+    uint32_t first, count;
+    float weight[4];
+} stencil;
 
-static place between(float at, uint32_t count) {
-    if (!(at > 0) || count < 2) return (place){0, 0};
-    if (!(at < (float)(count - 1))) return (place){count - 2, 1};
+static stencil four(float x) {
+    const float a = x + 1, b = x - 1, c = x - 2; /* from nodes at -1, 0, 1, 2 */
+    return (stencil){0, 4, {-x * b * c / 6, a * b * c / 2, -a * x * c / 2, a * x * b / 6}};
+}
+
+/* At `at` nodes from the first of `count`, of which there are 1 or at least 4. */
+static stencil among(float at, uint32_t count) {
+    if (count == 1) return (stencil){0, 1, {1}};
+    const float inside = fminf(fmaxf(at, 0), (float)(count - 1));
+    const uint32_t node = (uint32_t)inside, first = node < 1 ? 0 : node + 3 > count ? count - 4 : node - 1;
+    stencil s = four(inside - (float)(first + 1));
+    s.first = first;
+    return s;
+}
+
+/* The same where the last node is followed by the first: indices may exceed `count`. */
+static stencil around(float turns, uint32_t count) {
+    if (count == 1) return (stencil){0, 1, {1}};
+    const float at = turns * (float)count;
     const uint32_t node = (uint32_t)at;
-    return (place){node, at - (float)node};
+    stencil s = four(at - (float)node);
+    s.first = node + count - 1;
+    return s;
+}
+
+/* The row that has the azimuth. */
+static uint32_t row_of(const mu_albedo_table *t, uint32_t azimuth) {
+    uint32_t a = azimuth % t->azimuths;
+    if (t->rows == t->azimuths) return a;
+    if (2 * a > t->azimuths) a = t->azimuths - a;
+    return 4 * a > t->azimuths ? t->azimuths / 2 - a : a;
 }
 
 void mu_albedo_table_at(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
-    const place z = between(sqrtf(fmaxf(wo[2], 0)) * (float)(t->cosines - 1), t->cosines);
-    place around = {0, 0};
-    if (t->azimuths > 1) {
-        const float x = lobe->turn[0] * wo[0] + lobe->turn[1] * wo[1],
-                    y = lobe->turn[0] * wo[1] - lobe->turn[1] * wo[0];
-        const float turns = atan2f(y, x) * (float)(1 / TWO_PI), at = (turns < 0 ? turns + 1 : turns) * (float)t->azimuths;
-        const uint32_t node = (uint32_t)at;
-        around = (place){node, at - (float)node};
-    }
-    place s[2] = {{0, 0}, {0, 0}};
+    const float *turn = lobe->turn;
+    const place at = place_of(lobe->sigma, turn[0] * wo[0] + turn[1] * wo[1], turn[0] * wo[1] - turn[1] * wo[0], wo[2]);
+    const stencil z = among(at.height * (float)(t->heights - 1), t->heights), phi = around(at.around, t->azimuths);
+    stencil s[2];
     for (int k = 0; k < 2; k++)
-        if (t->sigmas[k] > 1) s[k] = between((logf(lobe->sigma[k]) - t->least[k]) / t->step[k], t->sigmas[k]);
+        s[k] = among(t->sigmas[k] > 1 ? (logf(lobe->sigma[k]) - t->least[k]) / t->step[k] : 0, t->sigmas[k]);
     rgb[0] = rgb[1] = rgb[2] = 0;
-    for (uint32_t corner = 0; corner < 8; corner++) {
-        const uint32_t i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-        const float weight = (i ? s[0].share : 1 - s[0].share) * (j ? s[1].share : 1 - s[1].share) *
-                             (k ? around.share : 1 - around.share);
-        if (!(weight > 0)) continue;
-        const uint32_t row = ((s[0].node + i) * t->sigmas[1] + s[1].node + j) * t->azimuths +
-                             (around.node + k) % t->azimuths;
-        const float *a = t->rgb + (size_t)3 * (row * t->cosines + z.node);
-        for (int c = 0; c < 3; c++) rgb[c] += weight * ((1 - z.share) * a[c] + z.share * a[3 + c]);
-    }
+    for (uint32_t i = 0; i < s[0].count; i++)
+        for (uint32_t j = 0; j < s[1].count; j++)
+            for (uint32_t k = 0; k < phi.count; k++) {
+                const float weight = s[0].weight[i] * s[1].weight[j] * phi.weight[k];
+                const uint32_t row = ((s[0].first + i) * t->sigmas[1] + s[1].first + j) * t->rows +
+                                     row_of(t, phi.first + k);
+                const float *a = t->rgb + (size_t)3 * (row * t->heights + z.first);
+                for (uint32_t l = 0; l < 4; l++)
+                    for (int c = 0; c < 3; c++) rgb[c] += weight * z.weight[l] * a[3 * l + (uint32_t)c];
+            }
+    for (int c = 0; c < 3; c++) rgb[c] = fmaxf(rgb[c], 0);
 }

@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * albedo_table.h: the directional albedo of a material, Fresnel included, as a table over views and, where M varies, over the
- * two roughnesses that a picture meets. Made of the mean weights of the material's own sampler, through the ABI alone.
+ * two roughnesses that a picture meets, to 1e-3. Made through the ABI alone.
  *
  * Views are in the frame of the lobe's axes U and V. For a microsurface that is radially symmetric before M that is exact;
  * one that is not (a histogram, a tilt) under an M that varies is taken as if M had turned it with its axes.
@@ -16,7 +16,8 @@
 #include "plugin/musurf_slopes.h"
 
 typedef struct mu_albedo_table {
-    uint32_t cosines, azimuths; /* of views: nodes evenly in the cosine's root, and around */
+    uint32_t heights, azimuths; /* of views: nodes from the horizon on, and around */
+    uint32_t rows;              /* azimuths that there are nodes for: all, or those of a quarter turn and its end */
     uint32_t sigmas[2];         /* nodes evenly in ln sigma along U and V; 1: it does not vary */
     float least[2], step[2];
     float *rgb;

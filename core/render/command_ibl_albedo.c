@@ -4,16 +4,15 @@
  * command_ibl_albedo.c: `musurf ibl albedo`, the other factor of the split integral (Section 3): how much of even light a
  * material reflects toward a view, Fresnel included. Of any material that can be looked into, under its M.
  *
- * The mean weight of its own sampler, which is that integral: BATCHES times an additive lattice, each shifted at random, so that
- * the batches' spread tells the standard error. The first two numbers, which move the normal, step by powers of the root of
- * x³ = x + 1 (Roberts 2018), the third by the root of 2.
+ * By even_light.c, along the lobe and by the material's own samples, whichever does better: BATCHES lattices of either kind, each
+ * shifted at random, so that their spread tells the standard error.
  */
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/render/answers.h"
 #include "core/render/command_ibl.h"
-#include "core/render/philox.h"
+#include "core/render/even_light.h"
 #include "core/render/query.h"
 #include "core/render/surface_rows.h"
 
@@ -22,7 +21,7 @@ enum { ROWS, COLUMNS, SAMPLES, SEED, BATCHES = 16 };
 static const mu_option options[] = {
     {"rows", "N", "cosines of the view, at (j + 1/2) / N, 1 to 1024 (default: 16)"},
     {"columns", "N", "azimuths of the view, at 2 pi i / N, 1 to 1024 (default: 8)"},
-    {"samples", "N", "per view, 16 to 16777216, in 16 batches (default: 4096)"},
+    {"samples", "N", "per view, 16 to 16777216, in 16 batches, half of them of its own sampler (default: 4096)"},
     {"seed", "S", "of the batches' shifts (default: 0)"},
     {NULL, NULL, NULL}};
 
@@ -39,7 +38,7 @@ static const mu_usage usage = {
     "      \"azimuths\"   of the views, radians counter-clockwise from x, of each column\n"
     "      \"albedo\"     [rows of [r, g, b] for each column, one after the other]\n"
     "      \"deviation\"  the largest standard error among them\n"
-    "What passes to the other side is not counted. A view takes some 0.005 s of a core, 0.08 s where tails are long.\n"
+    "What passes to the other side is not counted.\n"
     "A line that cannot be answered gets {\"id\", \"error\"}; the others go on, and the exit code is 1.\n"
     "\n"
     "example:\n"
@@ -51,49 +50,57 @@ typedef struct tables {
     mu_query_cache cache;
     double *albedo, *deviation; /* 3 of each view; 1 of each */
     mu_probed probed;
+    _Bool has_lobe;
+    mu_ibl_lobe_d lobe;
     musurf_result *result; /* of each row */
 } tables;
 
+/* What even_light.h asks of a probe seen from wo. */
+typedef struct asked {
+    const mu_probed *probed;
+    double wo[3];
+    musurf_result result; /* the first that was not good */
+} asked;
+
+static void toward(void *context, const double wi[3], double rgb[3]) {
+    asked *a = context;
+    musurf_probe_values v = {0};
+    const musurf_result result = a->probed->probe->evaluate(a->probed->compiled, MUSURF_DOUBLE, a->wo, NULL, wi, &v);
+    if (a->result == MUSURF_OK) a->result = result;
+    for (int c = 0; c < 3; c++) rgb[c] = v.f[c] * wi[2];
+}
+
+static void drawn(void *context, const double u[3], double rgb[3]) {
+    asked *a = context;
+    musurf_probe_sample s = {0};
+    const musurf_result result = a->probed->probe->sample(a->probed->compiled, MUSURF_DOUBLE, MUSURF_SAMPLE_AS_SET, a->wo, u, &s);
+    if (a->result == MUSURF_OK) a->result = result;
+    for (int c = 0; c < 3; c++) rgb[c] = s.wi[2] > 0 ? s.weight[c] : 0;
+}
+
 /* [any] */
 static void fill_row(void *context, uint32_t row) {
-    static const double step[3] = {0.7548776662466927, 0.5698402909980532, 0.4142135623730950};
     tables *t = context;
-    const uint64_t each = t->samples / BATCHES;
     const double z = ((double)row + 0.5) / (double)t->rows, flat = sqrt((1 - z) * (1 + z));
     for (uint64_t column = 0; column < t->columns; column++) {
         const double phi = 2 * 3.14159265358979323846 * (double)column / (double)t->columns;
-        const double wo[3] = {flat * cos(phi), flat * sin(phi), z};
         const size_t view = (size_t)(row * t->columns + column);
-        double mean[3] = {0, 0, 0}, square[3] = {0, 0, 0};
-        for (uint64_t b = 0; b < BATCHES; b++) {
-            double shift[3], sum[3] = {0, 0, 0};
-            mu_philox_uniforms(t->seed, view * BATCHES + b, shift);
-            for (uint64_t i = 0; i < each; i++) {
-                double u[3];
-                for (int k = 0; k < 3; k++) {
-                    const double place = shift[k] + (double)i * step[k];
-                    u[k] = fmin(place - floor(place), 1 - 0x1p-53);
-                }
-                musurf_probe_sample s = {0};
-                const musurf_result result = t->probed.probe->sample(t->probed.compiled, MUSURF_DOUBLE,
-                                                                     MUSURF_SAMPLE_AS_SET, wo, u, &s);
-                if (result != MUSURF_OK) {
-                    t->result[row] = result;
-                    return;
-                }
-                for (int c = 0; c < 3 && s.wi[2] > 0; c++) sum[c] += s.weight[c];
-            }
-            for (int c = 0; c < 3; c++) {
-                const double here = sum[c] / (double)each, before = here - mean[c]; /* Welford */
-                mean[c] += before / (double)(b + 1);
-                square[c] += before * (here - mean[c]);
-            }
-        }
-        for (int c = 0; c < 3; c++) {
-            t->albedo[3 * view + (size_t)c] = mean[c];
-            t->deviation[view] = fmax(t->deviation[view], sqrt(square[c] / (BATCHES * (BATCHES - 1))));
-        }
+        asked a = {&t->probed, {flat * cos(phi), flat * sin(phi), z}, MUSURF_OK};
+        const mu_even_source source = {&a, toward, drawn, .lobe = t->has_lobe ? &t->lobe : NULL};
+        const size_t each = t->samples >= 2 * BATCHES ? (size_t)t->samples / (2 * BATCHES) : 1;
+        const mu_even_mean mean = mu_even_light_shifted(&source, a.wo, BATCHES, each, t->seed, view);
+        for (int c = 0; c < 3; c++) t->albedo[3 * view + (size_t)c] = mean.rgb[c];
+        t->deviation[view] = mean.error;
+        if (a.result != MUSURF_OK) t->result[row] = a.result;
     }
+}
+
+/* Where its light comes from, if it has no delta lobe. */
+static void find_lobe(tables *t) {
+    const mu_probed *p = &t->probed;
+    musurf_moments m;
+    t->has_lobe = !(p->lobes & MUSURF_DELTA_LOBES) && p->slopes && p->slopes->moments(p->compiled, NULL, &m) == MUSURF_OK;
+    if (t->has_lobe) t->lobe = mu_ibl_lobe_of_d(&(mu_ibl_slopes){{m.mean[0], m.mean[1]}, m.xx, m.xy, m.yy});
 }
 
 static _Bool answer(void *context, const mu_document *line, mu_json *json, mu_error *error) {
@@ -104,7 +111,7 @@ static _Bool answer(void *context, const mu_document *line, mu_json *json, mu_er
     const mu_place material = mu_place_member(&root, "material");
     if (!mu_query_material(&t->cache, &material, &t->probed, error)) return 0;
     const size_t views = (size_t)(t->rows * t->columns);
-    for (size_t i = 0; i < views; i++) t->deviation[i] = 0;
+    find_lobe(t);
     for (size_t i = 0; i < t->rows; i++) t->result[i] = MUSURF_OK;
     mu_rows((uint32_t)t->rows, mu_processors(), fill_row, t);
     for (size_t i = 0; i < t->rows; i++)

@@ -43,7 +43,8 @@ static _Bool find_probe(const mu_material *material, const mu_place *place, mu_p
         return mu_place_fail(&id, error, "%s does not offer %s, which is needed to look into it",
                              material->type->id, MUSURF_PROBE_ID);
     }
-    *out = (mu_probed){probe, material->compiled, material->type->id};
+    *out = (mu_probed){probe, material->compiled, material->type->id, material->type->extension(MUSURF_SLOPES_ID),
+                       material->plan.lobes};
     return 1;
 }
 

@@ -9,11 +9,14 @@
 #include "core/render/json_out.h"
 #include "core/render/material.h"
 #include "plugin/musurf_probe.h"
+#include "plugin/musurf_slopes.h"
 
 typedef struct mu_probed {
     const musurf_probe *probe;
     const musurf_material *compiled;
     const char *type; /* its id */
+    const musurf_slopes *slopes; /* may be NULL */
+    uint32_t lobes;
 } mu_probed;
 
 /* Compiled materials by the JSON that described them: the next query mostly asks about one of the last. */

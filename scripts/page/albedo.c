@@ -1,63 +1,93 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* albedo.c: see albedo.h. By an additive lattice. */
+/*
+ * albedo.c: see albedo.h. Directions along the lobe (even.h). Cubic between nodes (Lagrange).
+ *
+ * Nodes are as the renderer's (core/render/albedo_table.c), but that the height's logarithm is a fraction of roots: with h = z / (1 +
+ * root(1 - z²)), and a roughness s of the lobe, even in the root of h / (h + s), which takes no time.
+ */
 #include "scripts/page/albedo.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "core/ibl/even.h"
 
 /* The view of the node on the horizon. */
-#define LEAST_COSINE 1e-4f
-#define QUARTER      1.57079632679f
+#define LEAST_COSINE 1e-6
+/* The least s that heights take notice of. */
+#define SMOOTHEST 0.05f
 
-/* Powers of the root of x⁴ = x + 1 (Roberts 2018). */
-static const double step[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+enum { LAST = PAGE_COSINES - 1, QUARTER = PAGE_AZIMUTHS - 1 }; /* steps up, and of a quarter turn */
 
-static void mean_weight(const mu_surface_f *surface, const float wo[3], int samples, float rgb[4]) {
+static void even_light(const page_material *m, const double wo[3], mu_ibl_fibonacci lattice, float rgb[4]) {
+    static const double still[2] = {0, 0};
+    const float seen[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
+    double sum[3] = {0, 0, 0};
     mu_closure_f c;
-    float sum[3] = {0, 0, 0};
-    if (mu_bind_f(surface, wo, NULL, &c))
-        for (int i = 0; i < samples; i++) {
-            float u[3];
-            for (int k = 0; k < 3; k++) {
-                const double place = (i + 0.5) * step[k];
-                u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
-            }
-            mu_sample_f s;
-            mu_sample_wi_f(&c, u, &s);
-            for (int k = 0; k < 3 && !s.rejected; k++) sum[k] += s.weight[k];
-        }
-    for (int k = 0; k < 3; k++) rgb[k] = sum[k] / (float)samples;
+    mu_ibl_even even;
+    mu_ibl_even_make(&m->lobe_exact, wo, &even);
+    const int bright = mu_bind_f(m->shaded, seen, NULL, &c);
+    for (uint32_t i = 0; bright && i < lattice.count; i++) {
+        double u[2], wi[3];
+        mu_value_f value;
+        mu_ibl_fibonacci_at(lattice, still, i, u);
+        const double weight = mu_ibl_even_direction(&even, u, wi) * wi[2];
+        if (!(weight > 0)) continue;
+        mu_eval_f(&c, (const float[3]){(float)wi[0], (float)wi[1], (float)wi[2]}, &value);
+        for (int k = 0; k < 3; k++) sum[k] += weight * (double)value.f[k];
+    }
+    for (int k = 0; k < 3; k++) rgb[k] = (float)(sum[k] / lattice.count);
     rgb[3] = 0;
 }
 
 void page_albedo_make(page_albedo *t, const page_material *m, int samples) {
-    for (int a = 0; a < PAGE_AZIMUTHS; a++)
-        for (int i = 0; i < PAGE_COSINES; i++) {
-            const float root = (float)i / (PAGE_COSINES - 1), z = fmaxf(root * root, LEAST_COSINE),
-                        flat = sqrtf((1 - z) * (1 + z)), phi = QUARTER * (float)a / (PAGE_AZIMUTHS - 1);
-            const float x = flat * cosf(phi), y = flat * sinf(phi), *turn = m->lobe.turn;
-            const float wo[3] = {turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, z};
-            mean_weight(m->shaded, wo, samples, t->rgb[a][i]);
+    const mu_ibl_fibonacci lattice = mu_ibl_fibonacci_below((uint64_t)samples);
+    const double *sigma = m->lobe_exact.sigma, *turn = m->lobe_exact.turn;
+    const _Bool rough = sigma[1] > 0;
+    t->scale = fmaxf((float)sqrt(2 * sigma[0] * sigma[1]), SMOOTHEST);
+    t->widen[0] = rough ? (float)sqrt(sigma[0]) : 1, t->widen[1] = rough ? (float)sqrt(sigma[1]) : 1;
+    for (int a = 0; a <= QUARTER; a++)
+        for (int i = 0; i <= LAST; i++) {
+            const double root = (double)i / LAST, s = (double)t->scale, h = root * root * s / (1 + s - root * root);
+            const double z = fmin(fmax(2 * h / (1 + h * h), LEAST_COSINE), 1), angle = 1.5707963267948966 * a / QUARTER;
+            const double u = cos(angle) / (double)t->widen[0], v = sin(angle) / (double)t->widen[1];
+            const double flat = sqrt((1 - z) * (1 + z)) / hypot(u, v), x = flat * u, y = flat * v;
+            even_light(m, (const double[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, z}, lattice, t->rgb[a + 1][i]);
         }
+    memcpy(t->rgb[0], t->rgb[2], sizeof t->rgb[0]); /* mirrored */
+    memcpy(t->rgb[QUARTER + 2], t->rgb[QUARTER], sizeof t->rgb[0]);
 }
 
-/* The angle of x, y >= 0 over a quarter turn, to 5e-3 of it: a fortieth of the way between nodes. */
+/* The angle of x, y >= 0 over a quarter turn. */
 static float quarters(float x, float y) {
     const float least = fminf(x, y), most = fmaxf(x, y), r = most > 0 ? least / most : 0;
-    const float angle = r * (0.7853982f + 0.273f * (1 - r)) / QUARTER; /* of atan r */
+    const float r2 = r * r; /* of atan r, to 1e-5 (Hastings 1955) */
+    const float angle = r * (0.9998660f + r2 * (-0.3302995f + r2 * (0.1801410f + r2 * (-0.0851330f + r2 * 0.0208351f)))) * 0.63661977f;
     return y > x ? 1 - angle : angle;
+}
+
+/* Weights of nodes at -1, 0, 1, 2. */
+static void four(float x, float weight[4]) {
+    const float a = x + 1, b = x - 1, c = x - 2;
+    weight[0] = -x * b * c / 6, weight[1] = a * b * c / 2, weight[2] = -a * x * c / 2, weight[3] = a * x * b / 6;
 }
 
 void page_albedo_at(const page_albedo *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[4]) {
     const float x = fabsf(lobe->turn[0] * wo[0] + lobe->turn[1] * wo[1]),
                 y = fabsf(lobe->turn[0] * wo[1] - lobe->turn[1] * wo[0]);
-    const float around = quarters(x, y) * (PAGE_AZIMUTHS - 1),
-                up = sqrtf(fmaxf(wo[2], 0)) * (PAGE_COSINES - 1);
-    const int a = around < PAGE_AZIMUTHS - 1 ? (int)around : PAGE_AZIMUTHS - 2,
-              i = up < PAGE_COSINES - 1 ? (int)up : PAGE_COSINES - 2;
-    const float s = around - (float)a, r = up - (float)i;
-    const float *here = t->rgb[a][i], *there = t->rgb[a + 1][i];
-    for (int k = 0; k < 4; k++)
-        rgb[k] =
-            (1 - s) * ((1 - r) * here[k] + r * here[4 + k]) + s * ((1 - r) * there[k] + r * there[4 + k]);
+    const float h = fmaxf(wo[2], 0) / (1 + sqrtf(x * x + y * y));
+    const float up = sqrtf(h * (1 + t->scale) / (h + t->scale)) * LAST,
+                around = quarters(t->widen[0] * x, t->widen[1] * y) * QUARTER;
+    const int i = up < 1 ? 0 : up < LAST - 2 ? (int)up - 1 : LAST - 3, a = around < QUARTER - 1 ? (int)around : QUARTER - 1;
+    float of_row[4], of_node[4], sum[4] = {0, 0, 0, 0};
+    four(up - (float)(i + 1), of_node);
+    four(around - (float)a, of_row);
+    for (int r = 0; r < 4; r++) {
+        float row[4] = {0, 0, 0, 0};
+        for (int n = 0; n < 4; n++)
+            for (int k = 0; k < 4; k++) row[k] += of_node[n] * t->rgb[a + r][i + n][k];
+        for (int k = 0; k < 4; k++) sum[k] += of_row[r] * row[k];
+    }
+    memcpy(rgb, sum, sizeof sum);
 }

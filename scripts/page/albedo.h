@@ -4,8 +4,8 @@
  * albedo.h: the directional albedo of the page's material, Fresnel included, by view: the other factor of the split
  * integral.
  *
- * Nodes are even in the root of the cosine and in the azimuth from the lobe's axis U to V: the page's distributions are
- * radially symmetric before M, so that what is mirrored at U or V is the same.
+ * Over a quarter turn from the lobe's axis U to V: the page's distributions are radially symmetric before M, so that what is
+ * mirrored at U or V is the same.
  */
 #ifndef PAGE_ALBEDO_H
 #define PAGE_ALBEDO_H
@@ -15,10 +15,11 @@
 enum { PAGE_COSINES = 24, PAGE_AZIMUTHS = 10 };
 
 typedef struct page_albedo {
-    float rgb[PAGE_AZIMUTHS][PAGE_COSINES][4]; /* the last unused: four at a time */
+    float rgb[PAGE_AZIMUTHS + 2][PAGE_COSINES][4]; /* with one beyond either end; the last number unused: four at a time */
+    float scale, widen[2];                         /* of heights, and along U and V: how nodes are placed */
 } page_albedo;
 
-/* Mean weights of `samples` directions of the material's own sampler. */
+/* By up to `samples` directions of light each. */
 void page_albedo_make(page_albedo *table, const page_material *material, int samples);
 void page_albedo_at(const page_albedo *table, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[4]);
 

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/ibl/lattice.h"
 #include "core/ibl/reads.h"
 #include "scripts/page/albedo.h"
 #include "scripts/page/numbers.h"
@@ -146,15 +147,16 @@ static void by_lamp(const page_sphere *s, const spot *p, float rgb[4]) {
     for (int k = 0; k < 3; k++) rgb[k] = 3.14159265f * value.f[k] * wi[2];
 }
 
-/* Uniform in [0, 1), of pixel and pass: the lattice of albedo.c, shifted by a hash (Wellons' lowbias32). */
+/* Uniform in [0, 1), of pixel and pass: a lattice, shifted by a hash (Wellons' lowbias32). */
 static void numbers_of(uint32_t pixel, uint32_t pass, float u[3]) {
-    static const double step[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    double shift[3], place[3];
     for (uint32_t k = 0; k < 3; k++) {
         uint32_t h = pixel * 3 + k;
         h = (h ^ h >> 16) * 0x7feb352du, h = (h ^ h >> 15) * 0x846ca68bu, h ^= h >> 16;
-        const double place = h * 0x1p-32 + (pass + 1.0) * step[k];
-        u[k] = fminf((float)(place - floor(place)), 0x1.fffffep-1f);
+        shift[k] = h * 0x1p-32;
     }
+    mu_ibl_lattice(shift, pass + 1, place);
+    for (int k = 0; k < 3; k++) u[k] = (float)place[k];
 }
 
 static void by_sampling(const page_sphere *s, const spot *p, uint32_t pixel, uint32_t pass, float rgb[4]) {

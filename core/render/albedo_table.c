@@ -246,7 +246,8 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     if (varies) t->heights = 32;
     if (material->plan.needs & MUSURF_NEEDS_TANGENT) {
         const _Bool even = is_even(&w);
-        t->azimuths = varies ? 64 : even ? 128 : 256;
+        t->azimuths = varies ? 64 : even ? 128 : 192;
+        if (!varies && !even) t->heights = 96;
         t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
     }
     const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;

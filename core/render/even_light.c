@@ -15,7 +15,7 @@
 #include "core/ibl/even.h"
 #include "core/render/philox.h"
 
-enum { FIRST = 144, SECOND = 233, DRAWN = 256, LEAST_BATCHES = 4 };
+enum { FIRST = 89, SECOND = 144, DRAWN = 256, LEAST_BATCHES = 4 };
 
 static void by_directions(const mu_even_source *s, const mu_ibl_even *even, mu_ibl_fibonacci lattice,
                           const double shift[2], double mean[3]) {
@@ -99,7 +99,7 @@ mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], mu_even_
     if (!s->lobe) return converge_by_samples(s, effort);
     const _Bool first = effort->drawn;
     mu_even_mean mean = first ? converge_by_samples(s, effort) : converge_by_directions(s, wo, effort);
-    if (mean.error <= effort->enough) return mean;
+    if (mean.error <= 2 * effort->enough) return mean; /* the other way would take as long for little */
     const mu_even_mean other = first ? converge_by_directions(s, wo, effort) : converge_by_samples(s, effort);
     if (!(other.error < mean.error)) return mean;
     effort->drawn = !first;

@@ -5,7 +5,7 @@
 import { materialNumbers, queryNumbers, sphereNumbers } from "./question.js";
 
 const FULL = 512, BEHIND = 96, COARSER = [512, 384, 256, 192], FRAME = 1000 / 30, STILL = 200, PASSES = 1024;
-const ALBEDO = { moving: 32, still: 1024 };
+const ALBEDO = { moving: 34, still: 610 };
 
 export class SphereView {
     constructor(team, canvas, behind, status, choices) {

@@ -166,10 +166,10 @@ static void test_no_jump(void **state) {
     }
 }
 
-/* Heavier tails reach further, lighter ones less far; GGX's own tail changes nothing. */
+/* Heavier tails reach further, lighter ones less far, of a lobe that ends before the horizon; GGX's own tail changes nothing. */
 static void test_tails(void **state) {
     (void)state;
-    const mu_ibl_lobe_f lobe = {.sigma = {0.05f, 0.01f}, .turn = {1, 0}};
+    const mu_ibl_lobe_f lobe = {.sigma = {0.005f, 0.001f}, .turn = {1, 0}};
     const float wo[3] = {0, 0, 1};
     double reach[3];
     mu_ibl_read plain[MU_IBL_READS_MOST], reads[MU_IBL_READS_MOST];
@@ -178,7 +178,7 @@ static void test_tails(void **state) {
     for (int kind = 0; kind < 3; kind++) {
         mu_definition d = bsdf_definition(kind == 0 ? MU_BECKMANN : kind == 1 ? MU_GGX : MU_GTR, 0.2, 1, 1, 0, 0, 1);
         float tail[MU_IBL_TAIL];
-        for (int i = 0; i < MU_IBL_TAIL; i++) tail[i] = (float)mu_ibl_tail_of(&d, (double)i / (MU_IBL_TAIL - 1));
+        for (size_t i = 0; i < MU_IBL_TAIL; i++) tail[i] = (float)mu_ibl_tail_of(&d, mu_ibl_tail_share(i));
         plan = plan_of(16);
         mu_ibl_plan_tail(&plan, tail);
         assert_int_equal(mu_ibl_reads(&plan, &lobe, wo, reads), 16);
@@ -190,22 +190,37 @@ static void test_tails(void **state) {
     assert_true(reach[0] < 0.8 * reach[1] && reach[2] > 1.1 * reach[1]);
 }
 
-/* Samples of a pixel look between each other's reads: shifted by multiples of the golden ratio, of which four leave 0.146 of a step
- * between two at least. In the middle of a lobe that is narrow and seen from above, steps are even: 0.1 is asked for. */
+/* Samples of a pixel look between each other's reads: four at quarters of a step. In the middle of a lobe that is narrow and seen from
+ * above, steps in asinh of the slope are even to sinh'(v) - 1, v two steps at most, of (1.4 ln 16 or less) / 8 each: within 45 %. As many
+ * reads, and a fourth as far apart: they are narrower; one read has none to look between. */
 static void test_phases(void **state) {
     (void)state;
-    const mu_ibl_plan plan = plan_of(16);
+    enum { SAMPLES = 4 };
+    mu_ibl_plan plan = plan_of(16);
     const mu_ibl_lobe_f lobe = {.sigma = {0.01f, 0.0005f}, .turn = {1, 0}};
     const float wo[3] = {0, 0, 1};
-    double place[2 * MU_IBL_PHASES];
-    for (size_t phase = 0; phase < MU_IBL_PHASES; phase++) {
-        mu_ibl_read reads[MU_IBL_READS_MOST];
+    double place[2 * SAMPLES];
+    mu_ibl_read reads[MU_IBL_READS_MOST];
+    mu_ibl_reads(&plan, &lobe, wo, reads);
+    const double alone = (double)reads[7].roughness;
+    mu_ibl_plan_phases(&plan, SAMPLES + 1); /* rounded down */
+    for (size_t phase = 0; phase < SAMPLES; phase++) {
         assert_int_equal(mu_ibl_reads_of_phase(&plan, phase, &lobe, wo, reads), 16);
         for (size_t k = 0; k < 2; k++) place[2 * phase + k] = (double)reads[7 + k].direction[0];
     }
     const double step = fabs(place[1] - place[0]);
-    for (size_t i = 0; i < 2 * MU_IBL_PHASES; i++)
-        for (size_t j = 0; j < i; j++) assert_true(fabs(place[i] - place[j]) > 0.1 * step);
+    for (size_t i = 0; i < 2 * SAMPLES; i++)
+        for (size_t j = 0; j < i; j++) assert_true(fabs(place[i] - place[j]) > 0.55 * 0.25 * step);
+    assert_true((double)reads[7].roughness < 0.8 * alone); /* its root is */
+    plan = plan_of(1);
+    mu_ibl_plan_phases(&plan, SAMPLES);
+    const mu_ibl_plan single = plan_of(1);
+    for (size_t phase = 0; phase < SAMPLES; phase++) {
+        mu_ibl_read one;
+        mu_ibl_reads_of_phase(&plan, phase, &lobe, wo, reads);
+        mu_ibl_reads(&single, &lobe, wo, &one);
+        assert_memory_equal(&one, reads, sizeof one);
+    }
 }
 
 int main(void) {

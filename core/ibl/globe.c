@@ -111,10 +111,16 @@ void mu_ibl_globe_add(const mu_ibl_globe *g, const float w[3], float level, floa
 /* Below, one by one is faster. */
 enum { SEVERAL = 4 };
 
-/* Adds reads, each from its own square: where, and with what weights, first; that is worked out for several at a time. */
-static inline void sum_squares(size_t count, const mu_ibl_square *const *squares, const float *restrict u,
-                               const float *restrict v, const float *restrict weight, float *restrict sum) {
-    float side[MU_IBL_BATCH], w[4][MU_IBL_BATCH];
+/* Where reads look, each in its own square: its first texel, and weights of the four; worked out for several at a time. */
+typedef struct spots {
+    const float *texel[MU_IBL_BATCH];
+    size_t row[MU_IBL_BATCH]; /* floats from one row to the next */
+    float w[4][MU_IBL_BATCH];
+} spots;
+
+static inline void find_spots(size_t count, const mu_ibl_square *const *squares, const float *restrict u,
+                              const float *restrict v, const float *restrict weight, spots *restrict s) {
+    float side[MU_IBL_BATCH];
     int at[MU_IBL_BATCH];
     for (size_t i = 0; i < count; i++) side[i] = (float)squares[i]->side;
     for (size_t i = 0; i < count; i++) {
@@ -123,13 +129,21 @@ static inline void sum_squares(size_t count, const mu_ibl_square *const *squares
         const float right = x - (float)column, down = y - (float)row, lower = weight[i] * down,
                     upper = weight[i] - lower;
         at[i] = 4 * (row * ((int)side[i] + 2) + column);
-        w[1][i] = upper * right, w[0][i] = upper - w[1][i];
-        w[3][i] = lower * right, w[2][i] = lower - w[3][i];
+        s->w[1][i] = upper * right, s->w[0][i] = upper - s->w[1][i];
+        s->w[3][i] = lower * right, s->w[2][i] = lower - s->w[3][i];
     }
+    for (size_t i = 0; i < count; i++) { /* most of a read's time is that of its texels to come */
+        s->texel[i] = squares[i]->texels + at[i], s->row[i] = 4 * (squares[i]->side + 2);
+        __builtin_prefetch(s->texel[i]);
+        __builtin_prefetch(s->texel[i] + s->row[i]);
+    }
+}
+
+static inline void sum_spots(size_t count, const spots *restrict s, float *restrict sum) {
     for (size_t i = 0; i < count; i++) {
-        const float *restrict a = squares[i]->texels + at[i], *restrict b = a + 4 * (squares[i]->side + 2);
+        const float *restrict a = s->texel[i], *restrict b = a + s->row[i];
         for (int k = 0; k < 4; k++)
-            sum[k] += (w[0][i] * a[k] + w[1][i] * a[4 + k]) + (w[2][i] * b[k] + w[3][i] * b[4 + k]);
+            sum[k] += (s->w[0][i] * a[k] + s->w[1][i] * a[4 + k]) + (s->w[2][i] * b[k] + s->w[3][i] * b[4 + k]);
     }
 }
 
@@ -137,6 +151,7 @@ static void sum_several(const mu_ibl_globe *g, const mu_ibl_batch *b, const floa
                         float sum[4]) {
     const mu_ibl_square *squares[2][MU_IBL_BATCH];
     float near[MU_IBL_BATCH], far[MU_IBL_BATCH], farther = 0;
+    spots s[2];
     const int last = (int)g->levels - 1;
     for (size_t i = 0; i < b->count; i++) {
         const int low = (int)b->level[i];
@@ -144,8 +159,10 @@ static void sum_several(const mu_ibl_globe *g, const mu_ibl_batch *b, const floa
         far[i] = b->weight[i] * (b->level[i] - (float)low), near[i] = b->weight[i] - far[i];
         farther += far[i];
     }
-    sum_squares(b->count, squares[0], u, v, near, sum);
-    if (farther > 0) sum_squares(b->count, squares[1], u, v, far, sum);
+    find_spots(b->count, squares[0], u, v, near, &s[0]);
+    if (farther > 0) find_spots(b->count, squares[1], u, v, far, &s[1]);
+    sum_spots(b->count, &s[0], sum);
+    if (farther > 0) sum_spots(b->count, &s[1], sum);
 }
 
 void mu_ibl_globe_sum(const mu_ibl_globe *g, const mu_ibl_batch *b, float rgb[4]) {

@@ -19,7 +19,7 @@
 #define GOLDEN 0.61803398874989485
 #define MOST   1e6f /* of alpha: squares of squares stay finite */
 
-size_t mu_ibl_importance_make(size_t count, mu_ibl_spread *grid) {
+size_t mu_ibl_importance_make(size_t count, mu_ibl_grid *grid) {
     size_t n = 1;
     while ((n + 1) * (n + 1) <= count) n++;
     for (size_t i = 0; i < n; i++)
@@ -29,7 +29,6 @@ size_t mu_ibl_importance_make(size_t count, mu_ibl_spread *grid) {
             grid->along[i * n + j] = (float)(r * cos(phi)), grid->across[i * n + j] = (float)(r * sin(phi));
             grid->weight[i * n + j] = (float)(1 / (double)(n * n));
         }
-    grid->step = 0;
     return n * n;
 }
 
@@ -39,7 +38,7 @@ static float lambda(const float axes[2][2], const float w[3]) {
     return (sqrt(1 + (u * u + v * v) / larger(w[2] * w[2], REAL_MIN)) - 1) / 2;
 }
 
-size_t mu_ibl_importance_reads(const mu_ibl_spread *grid, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
+size_t mu_ibl_importance_reads(const mu_ibl_grid *grid, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
                                mu_ibl_read *out) {
     const float root2 = 1.41421356237309504880f;
     const float a = smaller(root2 * lobe->sigma[0], MOST), b = smaller(root2 * lobe->sigma[1], MOST);

@@ -7,8 +7,8 @@
 #include "core/ibl/reads.h"
 
 /* Of the largest square number up to `count`, which is returned. */
-size_t mu_ibl_importance_make(size_t count, mu_ibl_spread *grid);
-size_t mu_ibl_importance_reads(const mu_ibl_spread *grid, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
+size_t mu_ibl_importance_make(size_t count, mu_ibl_grid *grid);
+size_t mu_ibl_importance_reads(const mu_ibl_grid *grid, size_t count, const mu_ibl_lobe_f *lobe, const float wo[3],
                                mu_ibl_read *out);
 
 #endif

@@ -75,7 +75,7 @@ size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl
     case MU_IBL_LOBE:
         return mu_ibl_spread_reads(plan, phase, lobe, wo, out);
     case MU_IBL_FILTERED:
-        return mu_ibl_importance_reads(&plan->spread[0], plan->settings.samples, lobe, wo, out);
+        return mu_ibl_importance_reads(&plan->grid, plan->settings.samples, lobe, wo, out);
     default:
         return split(lobe, wo, out);
     }

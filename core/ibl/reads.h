@@ -35,37 +35,40 @@ typedef enum mu_ibl_technique {
     MU_IBL_FILTERED
 } mu_ibl_technique;
 
-/* The shape of a distribution beside GGX's: that many times as far from the mean is the slope within which a share i /
- * (MU_IBL_TAIL - 1) of all are, i = 0, 1 ...; GGX of the same Sigma is 1 throughout. */
+/* The shape of a distribution beside GGX's: that many times as far from the mean is the slope within which a share of all are, at
+ * MU_IBL_TAIL shares from 0 to nearly 1; GGX of the same Sigma is 1 throughout. */
 enum { MU_IBL_TAIL = 33 };
-/* Several pictures of one place, samples of a pixel, look between each other's reads: phases of the same. */
-enum { MU_IBL_PHASES = 4 };
+double mu_ibl_tail_share(size_t i);
+/* Samples of a pixel look between each other's reads: phases, a power of two of them at most. */
+enum { MU_IBL_PHASES = 16 };
 /* How many reads are chosen at most, where their number is. */
 enum { MU_IBL_READS_CHOSEN = 33 };
-/* How many of MU_IBL_LOBE take a frame as long as the usual 16 along the axis, measured (`make ibl`): where nobody says. */
-enum { MU_IBL_READS_OF_LOBE = 10 };
+/* How many of MU_IBL_LOBE where nobody says: they take a frame less time than the usual 16 along the axis, measured (`make ibl`). */
+enum { MU_IBL_READS_OF_LOBE = 8 };
 
-/* Where the reads of MU_IBL_LOBE stand, for any lobe (spread.c); of MU_IBL_FILTERED (importance.c). */
-typedef struct mu_ibl_spread {
-    size_t count;
-    float step; /* between neighbours, in asinh of `along` */
-    float across[MU_IBL_READS_MOST]; /* of MU_IBL_FILTERED alone */
-    float along[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
-} mu_ibl_spread;
+/* Where the reads of MU_IBL_FILTERED stand, for any lobe (importance.c). */
+typedef struct mu_ibl_grid {
+    float across[MU_IBL_READS_MOST], along[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
+} mu_ibl_grid;
 
 /* What is decided once per material. */
 typedef struct mu_ibl_plan {
     mu_ibl_technique technique;
     mu_ibl_settings_f settings;
-    int tailed; /* of MU_IBL_LOBE */
+    int tailed; /* of MU_IBL_LOBE, as what follows */
     float tail[MU_IBL_TAIL];
-    mu_ibl_spread spread[MU_IBL_PHASES]; /* of MU_IBL_FILTERED the first */
+    float logarithm; /* of the number of reads */
+    size_t phases;
+    float shift[MU_IBL_PHASES]; /* of a phase's reads, in their distance */
+    mu_ibl_grid grid;           /* of MU_IBL_FILTERED */
 } mu_ibl_plan;
 
 /* samples from 1 to MU_IBL_READS_MOST; of MU_IBL_LOBE 0 as well: as many as the lobe needs, which changes without a
  * jump. For GGX; and for another shape: its MU_IBL_TAIL numbers. */
 void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan);
 void mu_ibl_plan_tail(mu_ibl_plan *plan, const float *tail);
+/* For pictures that are means of so many samples of a pixel, which look between each other's reads. Otherwise 1. */
+void mu_ibl_plan_phases(mu_ibl_plan *plan, size_t samples);
 
 /* How many there are, at most MU_IBL_READS_MOST: 1, settings.samples, or what was chosen. wo.z > 0. */
 size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out);

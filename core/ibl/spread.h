@@ -6,8 +6,6 @@
 
 #include "core/ibl/reads.h"
 
-/* `tail`: NULL, or MU_IBL_TAIL numbers. */
-void mu_ibl_spread_make(size_t count, size_t phase, const float *tail, mu_ibl_spread *spread);
 size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                            mu_ibl_read *out);
 

@@ -24,7 +24,7 @@ struct mu_image_light {
     mu_ibl_globe globe;
     float *memory; /* of the globe */
     lit_material *materials;
-    uint32_t count;
+    uint32_t count, samples; /* of a pixel */
     _Bool means;
 };
 
@@ -192,6 +192,7 @@ void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *
     for (uint32_t m = 0; m < light->count; m++) {
         lit_material *material = &light->materials[m];
         mu_ibl_plan_make(settings->technique, &own, &material->plan);
+        mu_ibl_plan_phases(&material->plan, light->samples);
         if (settings->tails) mu_ibl_plan_tail(&material->plan, material->source.tail);
     }
 }
@@ -202,6 +203,7 @@ mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, m
         mu_fail(error, "not enough memory");
         return NULL;
     }
+    light->samples = tracer->samples;
     if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
         (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error))) {
         mu_image_light_choose(light, &tracer->scene->integrator);

@@ -31,7 +31,7 @@ _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named
     source->lobe = mu_ibl_lobe_of_f(&own);
     const _Bool told = slopes->size > offsetof(musurf_slopes, tail) && slopes->tail;
     for (size_t i = 0; i < MU_IBL_TAIL; i++)
-        source->tail[i] = told ? (float)slopes->tail(m->compiled, (double)i / (MU_IBL_TAIL - 1)) : 1;
+        source->tail[i] = told ? (float)slopes->tail(m->compiled, mu_ibl_tail_share(i)) : 1;
     return 1;
 }
 

@@ -73,8 +73,8 @@ void page_sphere_set(page_sphere *s, const page_material *material, const page_s
     mu_ibl_plan_make(s->technique < SAMPLED ? (mu_ibl_technique)s->technique : MU_IBL_MAJOR_AXIS, &in_float,
                      &s->plan);
     float tail[MU_IBL_TAIL];
-    for (int i = 0; i < MU_IBL_TAIL; i++)
-        tail[i] = (float)mu_ibl_tail_of(&material->definition, (double)i / (MU_IBL_TAIL - 1));
+    for (size_t i = 0; i < MU_IBL_TAIL; i++)
+        tail[i] = (float)mu_ibl_tail_of(&material->definition, mu_ibl_tail_share(i));
     mu_ibl_plan_tail(&s->plan, tail);
     s->turn[0] = (float)cos(numbers[TURN]), s->turn[1] = (float)sin(numbers[TURN]);
     s->exposure = (float)numbers[EXPOSURE];

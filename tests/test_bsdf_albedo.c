@@ -12,6 +12,7 @@
 #include "core/bsdf/singular.h"
 #include "tests/bsdf_fixture.h"
 #include "tests/moments.h"
+#include "tests/polar_albedo.h"
 
 #include <stdlib.h>
 
@@ -75,6 +76,13 @@ static void near_mean(const moments *m, double value, double slack) {
     fail();
 }
 
+static void measure(const mu_surface_f *s, double core, albedo_lengths *out) {
+    const float up[3] = {0, 0, 1};
+    mu_closure_f c;
+    assert_true(mu_bind_f(s, up, NULL, &c));
+    mu_albedo_lengths_of(&c, core, out);
+}
+
 static void quadrature_is_the_mean_of_samples(void **state) {
     (void)state;
     uniform u = {41};
@@ -84,6 +92,8 @@ static void quadrature_is_the_mean_of_samples(void **state) {
         void *const memory[2] = {memory_for(mu_surface_bytes_f(&d)), memory_for(mu_surface_bytes_d(&d))};
         const mu_surface_f *single = mu_surface_make_f(&d, memory[0]);
         const mu_surface_d *sampled = mu_surface_make_d(&d, memory[1]);
+        albedo_lengths lengths;
+        measure(single, 1, &lengths);
         for (int v = 0; v < 12; v++) {
             double w[3];
             mu_closure_f c;
@@ -94,11 +104,41 @@ static void quadrature_is_the_mean_of_samples(void **state) {
             const float wf[3] = {(float)w[0], (float)w[1], (float)w[2]};
             assert_true(mu_bind_f(single, wf, NULL, &c) && mu_bind_d(sampled, w, NULL, &other));
             sample_energy(&other, &u, 4000, &energy);
-            near_mean(&energy, (double)albedo_integral_f(&c, 1, 1e-3, &effort), 3e-3);
-            assert_true(effort.off <= 0 && effort.panels < 4000);
+            near_mean(&energy, (double)albedo_integral_f(&c, &lengths, 1e-3, &effort), 3e-3);
+            assert_true(effort.off <= 0 && effort.facets < 34000);
         }
         free(memory[0]);
         free(memory[1]);
+    }
+}
+
+/* And that of another quadrature, of every kind of slopes, through glass. */
+static void quadrature_is_that_of_another(void **state) {
+    (void)state;
+    uniform u = {43};
+    static const struct hostile others[] = {
+        {MU_STD, 0.3, 1.6, {0.01, 0, 0, 100}, {0, 0}, 1},  {MU_STD, 0.3, 1.6, {1, 2, 0, 1}, {0.3, 0.2}, 1},
+        {MU_SHEEN, 0.4, 2, {0.1, 0, 0, 10}, {0, 0}, 1},    {MU_GTR, 0.3, 0.4, {1, 0, 0, 1e4}, {0, 0}, 1},
+        {MU_GTR, 0.5, 4, {1e-4, 0, 0, 1}, {0, 0}, 1},      {MU_GGX, 0.3, 2, {6, 0, 0, 6}, {2.5, 1.66}, 1},
+        {MU_BECKMANN, 0.3, 2, {1, 0, 0, 1}, {0.9, 0.6}, 0}};
+    for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) {
+        const mu_definition d = definition_of(&others[k]);
+        void *const memory = memory_for(mu_surface_bytes_f(&d));
+        const mu_surface_f *s = mu_surface_make_f(&d, memory);
+        const double core = d.ndf == MU_GTR ? d.alpha : 1;
+        albedo_lengths lengths;
+        measure(s, core, &lengths);
+        for (int v = 0; v < 16; v++) {
+            double w[3], off;
+            mu_closure_f c;
+            view_of(v, &u, others[k].glass && v % 4 > 1, w);
+            assert_true(mu_bind_f(s, (const float[]){(float)w[0], (float)w[1], (float)w[2]}, NULL, &c));
+            const double E = (double)albedo_integral_f(&c, &lengths, 1e-3, NULL),
+                         other = polar_albedo(&c, core, 3e-4, &off);
+            if (fabs(E - other) > 3e-3 + off)
+                fail_msg("case %zu, view %g %g %g: %.5f, but %.5f", k, w[0], w[1], w[2], E, other);
+        }
+        free(memory);
     }
 }
 
@@ -126,6 +166,7 @@ static void furnace_closes_where_axes_differ_by_1e8(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(quadrature_is_the_mean_of_samples),
+                                       cmocka_unit_test(quadrature_is_that_of_another),
                                        cmocka_unit_test(furnace_closes_where_axes_differ_by_1e8)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
  */
 #include "core/bsdf/albedo.h"
 #include "tests/bsdf_fixture.h"
+#include "tests/polar_albedo.h"
 
 #include <stdlib.h>
 
@@ -48,7 +49,8 @@ static void tables_are_as_fine_as_asked(void **state) {
             bsdf_direction(pow((k + 0.5) / 40, 3), 2.4 * k, wo);
             const float w[3] = {(float)wo[0], (float)wo[1], (float)wo[2]};
             assert_true(mu_bind_f(plain.made, w, NULL, &c));
-            const double E = (double)albedo_integral_f(&c, 1, 1e-5, NULL);
+            double off;
+            const double E = polar_albedo(&c, 1, 1e-5, &off);
             assert_true(fabs((double)mu_albedo_f(b.made, w, &average) - E) < errors[i] + 1e-3);
         }
         assert_true(mu_surface_table_bytes_f(b.made) > before);

@@ -15,10 +15,31 @@ enum { WALKS = 2048 };                /* that tell where light leaves */
 static const double roundest = 0.999; /* B/A that u knows: ln 1 is 0 */
 static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
 
-double mu_albedo_core(const albedo_source *s, const closure *c) {
-    const int is_gtr = s->definition->ndf == MU_GTR &&
-                       c->kernel->plans[PLAN_GENERAL] == s->surface->kernel->plans[PLAN_GENERAL];
-    return is_gtr ? fmin(1, (double)s->surface->alpha / s->surface->unit) : 1;
+int mu_albedo_bind(const albedo_source *s, const float w[3], closure *c) {
+    if (!MU(mu_bind)(s->surface, w, s->transform, c)) return 0;
+    if (s->blur > 0) MU(mu_blur)(c, s->blur);
+    return 1;
+}
+
+/* Blurring makes GGX of what is not. */
+static int is_blurred(const albedo_source *s, const closure *c) {
+    return c->kernel->plans[PLAN_GENERAL] != s->surface->kernel->plans[PLAN_GENERAL];
+}
+
+void mu_albedo_measure(const albedo_source *s, albedo_lengths *out) {
+    closure c;
+    mu_albedo_bind(s, (const float[]){0, 0, 1}, &c);
+    /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
+    const int is_gtr = s->definition->ndf == MU_GTR && !is_blurred(s, &c);
+    mu_albedo_lengths_of(&c, is_gtr ? fmin(1, (double)s->surface->alpha / s->surface->unit) : 1, out);
+}
+
+float mu_albedo_lost(const albedo_source *s, const closure *c) {
+    if (s->slopes && c->kernel->traits & HAS_JUMPS) {
+        s->effort->facets += ALBEDO_SLOPES;
+        return 1 - mu_albedo_of_slopes(c, s->slopes);
+    }
+    return 1 - MU(albedo_integral)(c, s->lengths[is_blurred(s, c)], fmin(s->error / 4, 1e-3), s->effort);
 }
 
 /* Of what meets two facets or more and leaves, the share that leaves on the upper side, under uniform light from above:
@@ -100,13 +121,13 @@ static void lay(const closure *c, mu_albedo *t) {
 }
 
 /* n by which 8 steps of S say E best, at two azimuths. */
-static int best_roots(const albedo_source *source, const mu_albedo *t, double core, float turn,
-                      mu_albedo_side *side, double *error_of_it) {
+static int best_roots(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side,
+                      double *error_of_it) {
     enum { MOST = 4, STEPS = 16, AZIMUTHS = 2 };
     double least_error = INFINITY;
     int best = 0;
     for (side->roots = 0; side->roots < MOST; side->roots++) {
-        patch_maker m = {.source = source, .table = t, .side = side, .core = core, .turn = turn};
+        patch_maker m = {.source = source, .table = t, .side = side, .turn = turn};
         double error = 0;
         for (int k = 0; k < (t->columns == 1 ? 1 : AZIMUTHS); k++) {
             float lost[STEPS + 1];
@@ -123,14 +144,13 @@ static int best_roots(const albedo_source *source, const mu_albedo *t, double co
 }
 
 /* And sqrt(S) where the microsurface is not even, or if that halves what is off. */
-static void choose_roots(const albedo_source *source, const mu_albedo *t, double core, float turn,
-                         mu_albedo_side *side) {
+static void choose_roots(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side) {
     double plain, rooted;
     side->rooted = t->quadrants > 1;
-    const int roots = best_roots(source, t, core, turn, side, &plain);
+    const int roots = best_roots(source, t, turn, side, &plain);
     if (!side->rooted && !source->trusting) {
         side->rooted = 1;
-        const int others = best_roots(source, t, core, turn, side, &rooted);
+        const int others = best_roots(source, t, turn, side, &rooted);
         if (rooted < plain / 4) {
             side->roots = others;
             return;
@@ -149,24 +169,23 @@ void mu_albedo_make(const albedo_source *source, mu_albedo *t, albedo_room *room
     closure c;
     mu_albedo_bind(source, up, &c);
     lay(&c, t);
-    const double core = mu_albedo_core(source, &c);
     const int sides = source->surface->transmission ? 2 : 1;
-    const size_t before = source->effort->panels;
+    const size_t before = source->effort->facets;
     t->side[1].cells = 0;
     for (int i = 0; i < sides; i++) {
         mu_albedo_side *const side = &t->side[i];
         if (source->like)
             side->roots = source->like->side[i].roots, side->rooted = source->like->side[i].rooted;
         else
-            choose_roots(source, t, core, i ? -1.0f : 1.0f, side);
-        patch_maker m = {.source = source, .table = t, .side = side, .core = core, .turn = i ? -1.0f : 1.0f};
+            choose_roots(source, t, i ? -1.0f : 1.0f, side);
+        patch_maker m = {.source = source, .table = t, .side = side, .turn = i ? -1.0f : 1.0f};
         m.parted = source->surface->transmission;
         m.values = room->values + room->used[0], m.patch = room->patch + room->used[1];
         m.floats = smallest_of(floats, room->most[0] - room->used[0]) / (size_t)(sides - i);
         m.most =
             smallest_of(floats / ALBEDO_PATCH_FLOATS, room->most[1] - room->used[1]) / (size_t)(sides - i);
-        const size_t so_far = source->effort->panels - before;
-        mu_albedo_grow(&m, so_far < source->panels ? (source->panels - so_far) / (size_t)(sides - i) : 0);
+        const size_t so_far = source->effort->facets - before;
+        mu_albedo_grow(&m, so_far < source->facets ? (source->facets - so_far) / (size_t)(sides - i) : 0);
         room->used[0] += m.nodes + side->cells, room->used[1] += side->patches;
         floats -= m.nodes + side->cells;
         side->passes = 0;

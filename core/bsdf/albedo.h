@@ -25,7 +25,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "core/bsdf/musurf.h"
+#include "core/bsdf/albedo_lengths.h"
 
 /* Root patches along S, and along u at most; halvings of one at most. */
 enum {
@@ -161,9 +161,9 @@ void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumula
 /* The average over another frame. */
 double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side);
 
-/* What quadratures came to: panels of 11 slopes, and by how much the worst of them missed what was allowed. */
+/* What quadratures came to: facets that were asked, and by how much the worst of them missed what was allowed. */
 typedef struct albedo_effort {
-    size_t panels;
+    size_t facets;
     double off;
 } albedo_effort;
 
@@ -178,8 +178,9 @@ typedef struct albedo_source {
     const mu_albedo *like;             /* whose n and sqrt it takes; NULL: chosen */
     int trusting;                      /* not every cell is tested */
     const struct albedo_slope *slopes; /* of a histogram */
+    const albedo_lengths *lengths[2];  /* of slopes: of its distribution; of what is blurred, GGX */
     albedo_effort *effort;             /* so far */
-    size_t panels;                     /* that refining a table may take, of that */
+    size_t facets;                     /* that refining a table may take, of that */
 } albedo_source;
 /* Where tables put their values, and their patches: so many of both, and so many taken. */
 typedef struct albedo_room {
@@ -189,15 +190,17 @@ typedef struct albedo_room {
 } albedo_room;
 /* Makes a table in `floats` values at most, and in what room there is. */
 void mu_albedo_make(const albedo_source *source, mu_albedo *out, albedo_room *room, size_t floats);
-/* Where slopes crowd, in slope units: gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too. */
-double mu_albedo_core(const albedo_source *source, const mu_closure_f *c);
+/* The lengths of the slopes of what the source makes of a surface, blurred or not. */
+void mu_albedo_measure(const albedo_source *source, albedo_lengths *out);
+/* 1 - E of a closure of the source, to within a quarter of the source's error, or 1e-3. */
+float mu_albedo_lost(const albedo_source *source, const mu_closure_f *c);
 
 /* E(wo) of a closure of single scattering, by wedges of azimuth that are halved until they agree to within `allowed`
- * (albedo_quadrature.c). `core` is where its slopes crowd, in slope units; `effort` may be NULL, and is added to. */
-float albedo_integral_f(const mu_closure_f *c, double core, double allowed, albedo_effort *effort);
-/* F G2 of what a facet reflects, and (1 - F) G2 of what it refracts; its unit normal, and the cosine that it faces wo by. */
-enum { ALBEDO_REFLECTED = 1, ALBEDO_REFRACTED = 2, ALBEDO_BOTH = 3 };
-double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing, int ways);
+ * (albedo_quadrature.c), `lengths` those of its distribution; `effort` may be NULL, and is added to. */
+float albedo_integral_f(const mu_closure_f *c, const albedo_lengths *lengths, double allowed,
+                        albedo_effort *effort);
+/* F G2 of what a facet reflects and (1 - F) G2 of what it refracts; its unit normal, and the cosine that it faces wo by. */
+double albedo_passed_f(const mu_closure_f *c, const double unit[3], double facing);
 
 /* E(wo) of a histogram: slopes in slope units, and their weights, made once for all views (albedo_histogram.c). */
 enum { ALBEDO_SLOPES = 1 << 11 };

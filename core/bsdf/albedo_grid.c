@@ -105,8 +105,7 @@ static float lost_of(const albedo_source *source, const double v[4], const float
     closure c;
     if (!MU(mu_bind)(source->surface, (const float[]){sign * w[0], sign * w[1], sign * w[2]}, m, &c))
         return 1;
-    return 1 -
-           MU(albedo_integral)(&c, mu_albedo_core(source, &c), fmin(source->error / 4, 1e-3), source->effort);
+    return mu_albedo_lost(source, &c);
 }
 
 /* A probe of a roughness: at a height in the frame, of what is as rough along both axes, or smooth along the other, or rough
@@ -168,7 +167,7 @@ void mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, albedo_roo
                          float *unsure) {
     const int sides = like->surface->transmission ? 2 : 1;
     albedo_source source = *like;
-    const size_t before = like->effort->panels;
+    const size_t before = like->effort->facets;
     source.trusting = 1, source.error /= 2; /* the other half is for what lies between */
     float *const averages = room->values + room->used[0];
     room->used[0] += (size_t)(sides * ALBEDO_GRID_AVERAGES);
@@ -189,9 +188,9 @@ void mu_albedo_grid_make(const albedo_source *like, mu_albedo *table, albedo_roo
             /* it changes slowly, but where slopes are steep */
             source.like = j == i || i >= gentle || j % ROOTS_HOLD == 1 ? NULL : &t[-1];
             /* a hard table may take more than its part of the work that is left */
-            const size_t taken = source.effort->panels - before,
+            const size_t taken = source.effort->facets - before,
                          to_come = (size_t)(table_at(out->count - 1, out->count - 1) - table_at(i, j));
-            source.panels = (like->panels > taken ? like->panels - taken : 0) / (1 + to_come / 8);
+            source.facets = (like->facets > taken ? like->facets - taken : 0) / (1 + to_come / 8);
             mu_albedo_make(&source, t, room, (size_t)(sides * ALBEDO_GRID_MOST));
             for (int side = 0; side < sides && i < gentle; side++) worst = fmaxf(worst, t->side[side].unsure);
         }

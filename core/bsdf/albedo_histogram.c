@@ -45,7 +45,7 @@ float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBED
         if (!(seen > 0)) continue;
         const double length = sqrt(m[0] * m[0] + m[1] * m[1] + 1),
                      unit[3] = {m[0] / length, m[1] / length, 1 / length};
-        sum += slopes[n].weight * seen * MU(albedo_passed)(c, unit, seen / length, ALBEDO_BOTH);
+        sum += slopes[n].weight * seen * MU(albedo_passed)(c, unit, seen / length);
     }
     return (float)fmin(sum / o[2], 1);
 }

@@ -16,12 +16,11 @@ typedef struct patch_maker {
     const albedo_source *source;
     const mu_albedo *table;
     mu_albedo_side *side;
-    float *values;       /* of its nodes, and then of its cells */
-    albedo_patch *patch; /* its own */
-    size_t floats, most; /* that it may take, and patches */
-    size_t nodes;        /* so far */
-    size_t pending;      /* patches that are still to grow */
-    double core;
+    float *values;                        /* of its nodes, and then of its cells */
+    albedo_patch *patch;                  /* its own */
+    size_t floats, most;                  /* that it may take, and patches */
+    size_t nodes;                         /* so far */
+    size_t pending;                       /* patches that are still to grow */
     float turn;                           /* +1; -1 from below */
     int quadrant, column, row;            /* of the root patch */
     int parted;                           /* light is transmitted, too */
@@ -35,6 +34,6 @@ int mu_albedo_bind(const albedo_source *s, const float w[3], mu_closure_f *c);
 /* 1 - E at u and S of the root patch, from 0 to 1. */
 float mu_albedo_evaluate(const patch_maker *m, double u, double s);
 /* All patches of the side, and its lobe, by that much work (albedo_effort). */
-void mu_albedo_grow(patch_maker *m, size_t panels);
+void mu_albedo_grow(patch_maker *m, size_t facets);
 
 #endif

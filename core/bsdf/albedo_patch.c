@@ -26,12 +26,6 @@ typedef struct rect {
     float left[2]; /* along either axis: what it is off, as far as is known */
 } rect;
 
-int mu_albedo_bind(const albedo_source *s, const float w[3], closure *c) {
-    if (!MU(mu_bind)(s->surface, w, s->transform, c)) return 0;
-    if (s->blur > 0) MU(mu_blur)(c, s->blur);
-    return 1;
-}
-
 float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
     float w[3];
     closure c;
@@ -40,12 +34,7 @@ float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
                         (float)albedo_s(m->side, (m->row + s) / ALBEDO_ROWS), w);
     for (int k = 0; k < 3; k++) w[k] *= m->turn;
     if (!mu_albedo_bind(m->source, w, &c)) return 1;
-    if (m->source->slopes && c.kernel->traits & HAS_JUMPS) {
-        m->source->effort->panels += ALBEDO_SLOPES / 11; /* of as many slopes */
-        return fmaxf(1 - mu_albedo_of_slopes(&c, m->source->slopes), least);
-    }
-    const double allowed = fmin(m->source->error / 4, 1e-3);
-    return fmaxf(1 - MU(albedo_integral)(&c, m->core, allowed, m->source->effort), least);
+    return fmaxf(mu_albedo_lost(m->source, &c), least);
 }
 
 /* The value at j, i of 2^log each of the root patch. */
@@ -99,13 +88,13 @@ static float off_within(patch_maker *m, const rect *r, int j, int i) {
 
 /* The most that lines between nodes along an axis are off what is midway; half of what cells are off in their middle, to which
  * both axes add; and what lines are off where total reflection begins, however narrow that is. */
-static float look_between(patch_maker *m, const rect *r, int axis, size_t panels) {
+static float look_between(patch_maker *m, const rect *r, int axis, size_t facets) {
     const int cells = 1 << r->log[axis], lines = 1 << r->log[!axis], round = m->table->columns == 1;
     float worst = 0;
     for (int k = 0; k <= (round ? 0 : lines); k++) {
         const float kink = axis ? critical(m, (r->at[0] + (double)k / lines) / (1 << r->level[0])) : -1;
         if (kink >= 0) worst = fmaxf(worst, off_at(m, r, k, kink));
-        for (int i = 0; i < cells && m->source->effort->panels < panels; i++) {
+        for (int i = 0; i < cells && m->source->effort->facets < facets; i++) {
             const float here = axis ? at(m, r, k, 2 * i + 1, 1, 1) : at(m, r, 2 * i + 1, k, 0, 1),
                         from = axis ? at(m, r, k, i, -1, 0) : at(m, r, i, k, -1, 0),
                         to = axis ? at(m, r, k, i + 1, -1, 0) : at(m, r, i + 1, k, -1, 0);
@@ -127,9 +116,9 @@ static int has_room(const patch_maker *m, const rect *r, int patches) {
     return m->nodes + m->side->cells + needed <= m->floats && m->side->patches + (size_t)patches <= m->most;
 }
 
-/* Halves cells until both axes are near enough, or the work so far comes to `panels`; what is left is added to the side's.
+/* Halves cells until both axes are near enough, or the work so far comes to `facets`; what is left is added to the side's.
  * Returns the axis along which the patch itself has to be halved, or -1. */
-static int refine(patch_maker *m, rect *r, size_t panels) {
+static int refine(patch_maker *m, rect *r, size_t facets) {
     const albedo_source *const source = m->source;
     const float wanted = (float)source->error / 2;
     const int isotropic = m->table->columns == 1;
@@ -143,12 +132,12 @@ static int refine(patch_maker *m, rect *r, size_t panels) {
         if (done[axis]) continue;
         const float before = left[axis];
         const int few = axis == 0 && (float)(1 << (r->level[0] + r->log[0])) < cells;
-        left[axis] = few ? 1 : look_between(m, r, axis, unknown[axis] ? SIZE_MAX : panels);
+        left[axis] = few ? 1 : look_between(m, r, axis, unknown[axis] ? SIZE_MAX : facets);
         done[axis] = 1, unknown[axis] = 0;
         /* of a look that has to end early, what the one before said is known, at most */
-        if (source->effort->panels >= panels && !few) left[axis] = fmaxf(left[axis], before);
+        if (source->effort->facets >= facets && !few) left[axis] = fmaxf(left[axis], before);
         if (left[axis] <= wanted) continue;
-        if (r->level[axis] + r->log[axis] >= source->halvings || (source->effort->panels >= panels && !few))
+        if (r->level[axis] + r->log[axis] >= source->halvings || (source->effort->facets >= facets && !few))
             continue;
         if (r->log[axis] == LEAF) {
             if (split < 0 || left[axis] > left[split]) split = axis;
@@ -178,9 +167,9 @@ static void store(patch_maker *m, albedo_patch *p, const rect *r) {
     m->side->cells += (uint32_t)(across * up);
 }
 
-/* A patch, and what it is halved to, until the work comes to `panels`: the first half may take three quarters of what is left. */
-static void fill(patch_maker *m, uint32_t patch, rect r, size_t panels) {
-    const int axis = refine(m, &r, panels);
+/* A patch, and what it is halved to, until the work comes to `facets`: the first half may take three quarters of what is left. */
+static void fill(patch_maker *m, uint32_t patch, rect r, size_t facets) {
+    const int axis = refine(m, &r, facets);
     if (axis < 0) {
         store(m, &m->patch[patch], &r);
         return;
@@ -188,13 +177,13 @@ static void fill(patch_maker *m, uint32_t patch, rect r, size_t panels) {
     const uint32_t child = m->side->patches;
     m->side->patches += 2;
     m->patch[patch] = (albedo_patch){.cell = m->side->cells, .child = child, .axis = (uint8_t)axis};
-    const size_t so_far = m->source->effort->panels;
+    const size_t so_far = m->source->effort->facets;
     r.level[axis]++, r.at[axis] *= 2, r.log[axis]--;
     m->pending++;
-    fill(m, child, r, panels > so_far ? so_far + (panels - so_far) / 4 * 3 : so_far);
+    fill(m, child, r, facets > so_far ? so_far + (facets - so_far) / 4 * 3 : so_far);
     m->pending--;
     r.at[axis]++;
-    fill(m, child + 1, r, panels);
+    fill(m, child + 1, r, facets);
 }
 
 /* Nothing is known of a root patch but the edges where it meets those before. */
@@ -212,7 +201,7 @@ static void start(patch_maker *m, int k) {
     for (int j = 0; row > 0 && j < SIDE; j++) m->seen[j][0] = below[j];
 }
 
-void mu_albedo_grow(patch_maker *m, size_t panels) {
+void mu_albedo_grow(patch_maker *m, size_t facets) {
     albedo_effort *const effort = m->source->effort;
     mu_albedo_side *const side = m->side;
     const int roots = m->table->quadrants * m->table->columns * ALBEDO_ROWS;
@@ -222,12 +211,12 @@ void mu_albedo_grow(patch_maker *m, size_t panels) {
     side->unsure = 0, effort->off = 0;
     side->patch = m->patch, side->patches = (uint32_t)roots, side->cells = 0, m->nodes = 0;
     for (int k = 0; k < roots; k++) {
-        const size_t before = effort->panels;
+        const size_t before = effort->facets;
         start(m, k);
         m->pending = (size_t)(roots - 1 - k);
         /* most of the work is for few of them: each may take all but some for the others */
-        fill(m, (uint32_t)k, whole, before + (k == roots - 1 ? panels : panels / 8 * 7));
-        panels -= effort->panels - before < panels ? effort->panels - before : panels;
+        fill(m, (uint32_t)k, whole, before + (k == roots - 1 ? facets : facets / 8 * 7));
+        facets -= effort->facets - before < facets ? effort->facets - before : facets;
     }
     if (effort->off > m->source->error / 2) side->unsure = fmaxf(side->unsure, (float)effort->off);
     side->lost = m->values;

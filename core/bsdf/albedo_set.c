@@ -137,7 +137,7 @@ static float probe_blur(const void *context, float x, int probe) {
     closure c;
     source.blur = exp2f(x) * 1.000001f;
     if (!mu_albedo_bind(&source, w, &c)) return 1;
-    return 1 - MU(albedo_integral)(&c, 1, fmin(source.error / 4, 1e-3), source.effort);
+    return mu_albedo_lost(&source, &c);
 }
 
 static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *room) {
@@ -145,15 +145,15 @@ static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *r
     const float least = log2f(fmaxf(least_roughness(source->surface), 1e-30f));
     const blur_probes context = {source, tilted, sides};
     const albedo_probes probes = {probe_blur, &context, ALBEDO_PROBES / sides * sides};
-    const size_t before = source->effort->panels, may_take = source->panels;
+    const size_t before = source->effort->facets, may_take = source->facets;
     source->halvings = BLUR_HALVINGS, source->trusting = 1, source->error *= 0.6;
     const int count = mu_albedo_place_nodes(
         &probes, fminf(fmaxf(least, blurs_from), blurs_to), blurs_to, (float)source->error / 2,
         tilted && sides == 2 ? ALBEDO_BLURS / 2 : ALBEDO_BLURS, out->log_blur);
     for (int k = 0; k < count; k++) {
-        const size_t taken = source->effort->panels - before;
+        const size_t taken = source->effort->facets - before;
         source->blur = exp2f(out->log_blur[k]) * 1.000001f;
-        source->panels = (may_take > taken ? may_take - taken : 0) / (size_t)(1 + (count - 1 - k) / 4);
+        source->facets = (may_take > taken ? may_take - taken : 0) / (size_t)(1 + (count - 1 - k) / 4);
         mu_albedo_make(source, &out->level[out->levels++], room, 2 * floats_of_one(source->definition, 1));
     }
     for (int k = 0; k < 2 * out->levels - 3; k++) {
@@ -176,6 +176,7 @@ static void make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *tab
     if (source->definition->ndf == MU_GGX) out->blurred = out->grid, out->blurs = 1;
     if (!out->blurs || out->blurred.table) return;
     source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
+    source->lengths[0] = source->lengths[1];
     mu_albedo_grid_make(source, table + ALBEDO_GRID_TABLES, room, &out->blurred, &other);
     out->unsure = fmaxf(out->unsure, other);
 }
@@ -192,25 +193,32 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
                             .error = d->compensation_error,
                             .halvings = ALBEDO_HALVINGS,
                             .effort = &effort,
-                            .panels = ALBEDO_PANELS /
+                            .facets = ALBEDO_FACETS /
                                       (size_t)(d->compensation_blurs || d->compensation_varies ? 4 : 1)};
     source.surface = MU(mu_surface_make)(&single, single_at);
     albedo_slope slopes[ALBEDO_SLOPES];
     if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
+    albedo_lengths own, ggx;
+    mu_albedo_measure(&source, &own), source.lengths[0] = &own;
+    if (d->compensation_blurs) {
+        source.blur = 1e6f;
+        mu_albedo_measure(&source, &ggx), source.lengths[1] = &ggx;
+        source.blur = 0;
+    }
     mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
     out->levels = 1, out->blurs = d->compensation_blurs;
     out->unsure = 0, out->grid = out->blurred = (albedo_grid){.table = NULL};
     /* the rest of the work is for these */
-    source.panels = ALBEDO_PANELS / 4 * 3 / (size_t)(grid_tables(d) > ALBEDO_GRID_TABLES ? 2 : 1);
+    source.facets = ALBEDO_FACETS / 4 * 3 / (size_t)(grid_tables(d) > ALBEDO_GRID_TABLES ? 2 : 1);
     if (d->compensation_varies)
         make_grids(&source, out, (void *)grid, single_at, &room);
     else if (out->blurs)
         make_blurs(&source, out, &room);
-    float own = 0;
+    float off = 0;
     for (int k = 0; k < out->levels; k++)
         for (int side = 0; side < (d->transmission ? 2 : 1); side++)
-            own = fmaxf(own, out->level[k].side[side].unsure);
-    if (own > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, own);
+            off = fmaxf(off, out->level[k].side[side].unsure);
+    if (off > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, off);
     for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
     out->bytes =
         sizeof *out + room.used[0] * sizeof(float) + room.used[1] * sizeof(albedo_patch) + grids_bytes(d);

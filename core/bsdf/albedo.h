@@ -95,10 +95,10 @@ static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side 
                              : t->frame.k * f->det * (1 - flat) * (r > 0 ? r2 : 1 + t->frame.k * t->frame.k) /
                                    (t->frame.log * both * least);
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
-    const float still = w[2] * (n + r) / (n * n); /* 1 - (r / n)² */
-    float rest = still, part = 1;
-    for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2;
-    const float row = albedo_row(side, 1 - rest) * ALBEDO_ROWS, column = u * (float)t->columns;
+    const float still = w[2] * (n + r) / (n * n);      /* 1 - (r / n)² */
+    float rest = still, part = 1, s = r / n * (r / n); /* S: 1 - rest, next to the normal too */
+    for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2, s /= 1 + rest;
+    const float row = albedo_row(side, s) * ALBEDO_ROWS, column = u * (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
     return (albedo_place){.patch = (quadrant * t->columns + j) * ALBEDO_ROWS + i,
                           .u = column - (float)j,

@@ -83,6 +83,54 @@ static void table_knows_a_closed_form(void **state) {
     free(b.memory);
 }
 
+/* From as rough to as smooth as M makes a surface: what leaves it at once is too little, or what it loses, for 1 - E to be told
+ * from 1 or 0 in float. */
+static void tables_know_every_scale(void **state) {
+    (void)state;
+    uniform u = {27};
+    const double scales[] = {1e-12, 1e-6, 1e-5, 1e5, 1e12};
+    for (int k = 0; k < 10; k++) {
+        const double scale = scales[k / 2];
+        mu_definition d = definition_of(0, k % 2, MU_COMPENSATED);
+        for (int i = 0; i < 4; i++) d.transform[i] *= scale;
+        scene b;
+        make(&b, &d);
+        for (int v = 0; v < 3; v++) {
+            double wo[3];
+            moments energy = {0};
+            mu_value_f to;
+            bsdf_direction((double[]){1, 0.7, 0.0087}[v], k + v, wo);
+            view(&b, wo);
+            furnace(&b, &u, 4000, &energy);
+            holds(&energy, 1, 0.01);
+            mu_eval_f(&b.c, (const float[]){0.6f, 0, 0.8f}, &to);
+            assert_true(to.f[0] >= 0 && to.f[0] < 1); /* away from the mirror's direction, or diffuse */
+        }
+        free(b.memory);
+    }
+}
+
+/* Rounding takes the place of no direction out of a table: next to the normal, 1 - (r / n)^2 may come out above 1. */
+static void tables_hold_every_direction(void **state) {
+    (void)state;
+    uniform u = {28};
+    for (int k = 0; k < 2; k++) { /* both interpolate in sqrt(S): a heavy tail, a tilt */
+        mu_definition d = bsdf_definition(k ? MU_GGX : MU_STD, 1e-3, 1.7, 1, 0, 0, 1);
+        d.multiple = MU_COMPENSATED, d.tilt[0] = k * 1e-3;
+        scene b;
+        make(&b, &d);
+        for (int i = 0; i < 20000; i++) {
+            const double sine = uniform_double(&u) / 2, phi = 7 * uniform_double(&u);
+            float average;
+            const float w[3] = {(float)(sine * cos(phi)), (float)(sine * sin(phi)),
+                                (float)sqrt(1 - sine * sine)};
+            const float E = mu_albedo_f(b.s, w, &average);
+            assert_true(E >= 0.5f && E <= 1);
+        }
+        free(b.memory);
+    }
+}
+
 /* Glass: both sides, all of it comes out again on one side or the other. */
 static void glass_keeps_all_light(void **state) {
     (void)state;
@@ -325,6 +373,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(walk_keeps_all_light),
                                        cmocka_unit_test(compensation_returns_what_is_lost),
                                        cmocka_unit_test(table_knows_a_closed_form),
+                                       cmocka_unit_test(tables_know_every_scale),
+                                       cmocka_unit_test(tables_hold_every_direction),
                                        cmocka_unit_test(glass_keeps_all_light),
                                        cmocka_unit_test(evaluation_agrees_with_sampling),
                                        cmocka_unit_test(walk_is_reciprocal),

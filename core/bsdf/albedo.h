@@ -90,10 +90,9 @@ static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side 
                 both = X + Y, least = X + flat * Y;
     const int round = t->columns == 1;
     const float u = round ? 0.5f : fminf(log1pf((1 - flat) * Y / least) / t->frame.log, 1);
-    const float around = round
-                             ? 0.63661977f * f->det
-                             : t->frame.k * f->det * (1 - flat) * (r > 0 ? r2 : 1 + t->frame.k * t->frame.k) /
-                                   (t->frame.log * both * least);
+    const float around = round ? 0.63661977f * f->det
+                               : (r > 0 ? r2 : 1 + t->frame.k * t->frame.k) / both / (t->frame.log * least) *
+                                     (t->frame.k * f->det * (1 - flat)); /* det r2 alone may underflow */
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
     const float still = w[2] * (n + r) / (n * n);      /* 1 - (r / n)² */
     float rest = still, part = 1, s = r / n * (r / n); /* S: 1 - rest, next to the normal too */

@@ -52,11 +52,13 @@ void MU(compensated_bind)(closure *c, real blur, int moved) {
                     below = l->average[1] * eta2, passes = fminf(l->passes[0] * above, below);
         l->passes[0] = passes / above, l->passes[1] = passes / below;
     }
-    const float w[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]}, E = 1 - l->average[0];
+    /* of what is so rough that hardly anything leaves at once, 1 - E is rounded to 1 */
+    const float w[3] = {(float)c->wo[0], (float)c->wo[1], (float)c->wo[2]},
+                E = fmaxf(1 - l->average[0], FLT_EPSILON / 2);
     l->lost = w[2] > 0 ? lobe_lost(l, below(c), w, &l->density) : 0;
     for (int k = 0; k < 3; k++) { /* Kulla & Conty 2017, with Hill's second F (2018) */
         const float F = (float)multiple_of(c->surface)->average[k];
-        l->repeated[k] = c->surface->transmission ? 1 : F * F * E / (1 - F * (1 - E));
+        l->repeated[k] = c->surface->transmission ? 1 : F * F * E / (1 - F + F * E);
     }
 }
 

@@ -49,7 +49,7 @@ static _Bool probe(mu_check_material *out, const mu_place *place, musurf_precisi
     if (out->material.one_footprint)
         return mu_place_fail(place, error,
                              "shows the flakes of one footprint: its D is not a density. Leave it out");
-    if (out->material.jacobian.map != MU_JACOBIAN_NONE || out->material.varying || out->material.blend || slots)
+    if (out->material.jacobian.map != MU_JACOBIAN_NONE || out->material.varying || out->material.blend || out->material.normal_map || slots)
         return mu_place_fail(place, error, "varies over the surface");
     if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample)
         return mu_place_fail(place, error, "%s does not offer %s", type->id, MUSURF_PROBE_ID);

@@ -17,6 +17,7 @@
 
 #include "core/render/features.h"
 #include "core/render/filtered.h"
+#include "core/render/normal_map.h"
 #include "core/render/varying.h"
 
 /* "a, b" as ["a", "b"]. */
@@ -42,17 +43,20 @@ static json_t *material(const mu_named_material *named) {
                  {MUSURF_DIFFUSE_REFLECTION, "diffuse_reflection"},
                  {MUSURF_DIFFUSE_TRANSMISSION, "diffuse_transmission"}};
     const musurf_plan *plan = &named->material.plan;
+    const mu_normal_map *normals = named->material.normal_map;
     json_t *names = json_array();
     for (size_t i = 0; i < sizeof lobes / sizeof *lobes; ++i)
         if (plan->lobes & lobes[i].bit) json_array_append_new(names, json_string(lobes[i].name));
     return json_pack(
-        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:b, s:o, s:o}", "name", named->name, "material",
+        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:b, s:s, s:o, s:o}", "name", named->name, "material",
         named->material.type->id, "plan", plan->name ? plan->name : "", "sampler",
         plan->sampler ? plan->sampler : "", "closure_bytes",
         (json_int_t)plan->closure_bytes, "table_bytes", (json_int_t)plan->table_bytes, "material_bytes",
         (json_int_t)plan->material_bytes, "texture_bytes",
-        (json_int_t)(named->material.varying ? mu_mipmap_bytes(&named->material.varying->mipmap) : 0), "slot_floats", (json_int_t)plan->slot_floats, "needs_tangent",
-        (plan->needs & MUSURF_NEEDS_TANGENT) != 0, "lobes", names, "left_out", split(plan->left_out));
+        (json_int_t)((named->material.varying ? mu_mipmap_bytes(&named->material.varying->mipmap) : 0) +
+                     (normals ? mu_mipmap_bytes(&normals->moments) : 0)), "slot_floats", (json_int_t)plan->slot_floats, "needs_tangent",
+        (plan->needs & MUSURF_NEEDS_TANGENT) != 0, "normal_map",
+        !normals ? "none" : normals->map ? "turns and widens" : "turns", "lobes", names, "left_out", split(plan->left_out));
 }
 
 static json_t *mesh(const mu_mesh *m) {

@@ -45,6 +45,7 @@ static uint32_t of_material(const mu_material *material) {
     if (material->plan.table_bytes) bits |= MU_FEATURE_MATERIAL_TABLES;
     if (material->jacobian.map != MU_JACOBIAN_NONE) bits |= MU_FEATURE_JACOBIANS;
     if (material->jacobian.map == MU_JACOBIAN_DISPLACEMENT) bits |= MU_FEATURE_TEXTURES;
+    if (material->normal_map) bits |= MU_FEATURE_TEXTURES | MU_FEATURE_NORMAL_MAPS;
     if (material->footprints) bits |= MU_FEATURE_FOOTPRINTS;
     if (material->blend) bits |= MU_FEATURE_BLENDS;
     const mu_source *source;

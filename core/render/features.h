@@ -24,6 +24,7 @@
     X(TWO_SIDED,             "two_sided",             "frames turned over when seen from behind")                      \
     X(JACOBIANS,             "jacobians",             "a transform per hit from the map's Jacobian, in slots")         \
     X(TEXTURES,              "textures",              "OpenImageIO, and parameters from pictures, averaged over a pixel, in slots")  \
+    X(NORMAL_MAPS,           "normal_maps",           "frames turned by pictures of normals, and lobes widened by how these vary in a pixel") \
     X(ATTRIBUTES,            "attributes",            "properties of a mesh file's vertices, and parameters from them, in slots")    \
     X(EXPRESSIONS,           "expressions",           "parameters from formulas of texture coordinates, in slots")     \
     X(BLENDS,                "blends",                "materials compiled at several values of a parameter that the plugin wants constant") \

@@ -40,6 +40,13 @@ static _Bool arrive(const mu_tracer *tracer, const mu_image_light *light, const 
     return shading->wo[2] > 0 && mu_lobe_at(&light->materials[hit->material].source, shading, lobe);
 }
 
+/* What of a read is on the side of the surface that it is lit from, where a normal map has turned the frame: paths end in there. A
+ * read of slope roughness a reaches by about a to either side. */
+static float above(const mu_shading *shading, mu_vec3 direction, float roughness) {
+    const float a = roughness * roughness + 1e-3f, share = 0.5f + 0.5f * mu_dot(direction, shading->ng) / a;
+    return fminf(fmaxf(share, 0), 1);
+}
+
 /* Up to MU_PACKET camera rays; `centres`: not spread by the film's filter. */
 static uint32_t look(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample,
                      _Bool centres, mu_ray *rays, mu_hit *hits) {
@@ -76,6 +83,7 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         if (!light->means) lobe.mean[0] = lobe.mean[1] = 0;
         const size_t n = mu_ibl_reads_of_phase(&light->materials[hits[i].material].plan, sample, &lobe, shading.wo, reads);
         out[i].reads = (uint32_t)n;
+        const _Bool bumpy = tracer->scene->materials[hits[i].material].material.normal_map != NULL;
         mu_ibl_batch batch;
         batch.count = n;
         for (size_t k = 0; k < n; k++) {
@@ -83,6 +91,7 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
             const mu_vec3 world = mu_to_world(&shading.frame, mu_v3(d[0], d[1], d[2]));
             batch.x[k] = world.x, batch.y[k] = world.y, batch.z[k] = world.z;
             batch.level[k] = reads[k].roughness * last, batch.weight[k] = reads[k].weight;
+            if (bumpy) batch.weight[k] *= above(&shading, world, reads[k].roughness);
         }
         mu_ibl_globe_sum(&light->globe, &batch, sum);
         for (int c = 0; c < 3; c++) out[i].rgb[c] = out[i].albedo[c] * sum[c];

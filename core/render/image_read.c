@@ -18,7 +18,7 @@
 
 typedef float *(*mu_reader)(const char *file, int *width, int *height, char *message, size_t size);
 typedef float *(*mu_channel_reader)(const char *file, const char *const *names, int named, int count, int *width,
-                                    int *height, char *message, size_t size);
+                                    int *height, double *step, char *message, size_t size);
 typedef double *(*mu_raw_reader)(const char *file, const char *channel, int *width, int *height,
                                  char *message, size_t size);
 
@@ -86,14 +86,14 @@ double *mu_image_read_raw(const char *file, const char *channel, int *width, int
 }
 
 float *mu_image_read_channels(const char *file, const char *const *names, _Bool named, int count, int *width,
-                              int *height, mu_error *error) {
+                              int *height, double *step, mu_error *error) {
     mu_channel_reader reader;
     char why[512] = "";
     sigset_t before;
     hold_signals(&before);
     float *values = NULL;
     *(void **)&reader = find(file, "mu_oiio_read_channels", error);
-    if (reader && !(values = reader(file, names, named, count, width, height, why, sizeof why)))
+    if (reader && !(values = reader(file, names, named, count, width, height, step, why, sizeof why)))
         mu_fail(error, "%s: %s", file, why[0] ? why : "cannot be read as an image");
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return values;

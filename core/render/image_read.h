@@ -19,11 +19,11 @@ float *mu_image_read(const char *file, int *width, int *height, mu_error *error)
  * free() it. `channel` NULL: its only one. */
 float *mu_image_read_plane(const char *file, const char *channel, int *width, int *height, mu_error *error);
 
-/* `count` channels of any picture, side by side: as they are stored, but whole-number codes as fractions of the largest. Those
- * of these names; if it lacks one, that is an error where they are `named` by the user, and else the first channels are
- * taken, as they are where `names` is NULL. free() it. */
+/* `count` channels of any picture, side by side: as they are stored, but whole-number codes as fractions of the largest, which
+ * are *step apart then; of floats that is 0. Those of these names; if it lacks one, that is an error where they are `named` by
+ * the user, and else the first channels are taken, as they are where `names` is NULL. free() it. */
 float *mu_image_read_channels(const char *file, const char *const *names, _Bool named, int count, int *width,
-                              int *height, mu_error *error);
+                              int *height, double *step, mu_error *error);
 
 /* One channel of any picture as it is stored, through the module: whole-number codes stay what they are, nothing is decoded
  * or divided by alpha. `channel` NULL: its only one. */

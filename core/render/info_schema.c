@@ -12,6 +12,7 @@
 #include "core/render/jacobian.h"
 #include "core/render/material_grid.h"
 #include "core/render/material_settings.h"
+#include "core/render/normal_map.h"
 
 enum { LONGEST_NAME = 128 };
 
@@ -122,6 +123,7 @@ json_t *mu_info_schema(const musurf_material_type *type) {
     const musurf_param *transform = mu_type_find(type, "transform");
     if (transform && transform->kind == MUSURF_MATRIX && (transform->flags & MUSURF_MAY_VARY))
         json_object_set_new(properties, "jacobian", mu_jacobian_schema());
+    json_object_set_new(properties, "normal_map", mu_normal_map_schema());
     json_object_set_new(schema, "required", json_pack("[s]", "material"));
     json_object_set_new(schema, "title", json_string(type->label));
     json_object_set_new(schema, "description", json_string(type->doc));

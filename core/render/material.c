@@ -10,6 +10,7 @@
 #include "core/render/material_file.h"
 #include "core/render/blend.h"
 #include "core/render/formula_check.h"
+#include "core/render/normal_turn.h"
 #include "core/render/varying.h"
 
 /* What the plugin says while compiling goes to the place of the parameter it speaks of. */
@@ -93,6 +94,11 @@ static _Bool vary_transform(mu_material *material, mu_settings *settings, const 
     setting->slot = MU_SLOT_TRANSFORM;
     setting->values = NULL;
     return 1;
+}
+
+/* Whether a normal map could widen its lobe by an M that varies. */
+static _Bool can_widen(const musurf_material_type *type) {
+    return find_varying_transform(type) && type->extension && type->extension(MUSURF_MAP_ID) && type->extension(MUSURF_SLOPES_ID);
 }
 
 static void read_transform(mu_material *material, const mu_settings *settings) {
@@ -223,13 +229,14 @@ static void measure_sampler(const musurf_material_type *type, mu_settings *setti
 
 static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_place *place, _Bool deforming,
                          _Bool to_render, mu_error *error) {
-    static const char *const here[] = {"material", "jacobian", NULL},
-                      *const in_file[] = {"material", "jacobian", "$schema", "description", NULL};
+    static const char *const here[] = {"material", "jacobian", "normal_map", NULL},
+                      *const in_file[] = {"material", "jacobian", "normal_map", "$schema", "description", NULL};
     const char *const *reserved = place->parent ? here : in_file;
     *material = (mu_material){.transform = {1, 0, 0, 1}};
     if (!json_is_object(place->value)) return mu_place_only(place, reserved, error);
 
-    const mu_place id = mu_place_member(place, "material"), jacobian = mu_place_member(place, "jacobian");
+    const mu_place id = mu_place_member(place, "material"), jacobian = mu_place_member(place, "jacobian"),
+                   normal_map = mu_place_member(place, "normal_map");
     const char *name;
     if (!mu_place_string(&id, &name, error)) return 0;
     mu_error why = {.text = ""};
@@ -247,14 +254,18 @@ static _Bool read_object(mu_material *material, mu_plugins *plugins, const mu_pl
         good = mu_jacobian_read(&material->jacobian, &jacobian, error) &&
                mu_jacobian_check(&material->jacobian, &jacobian, error);
     material->digest = digest_picture(material->digest, &material->jacobian.displacement.picture);
+    if (normal_map.value) good = good && mu_normal_map_read(&material->normal_map, &normal_map, error);
+    if (material->normal_map) material->digest = digest_picture(material->digest, &material->normal_map->moments);
+    const _Bool widens = material->normal_map && material->normal_map->placement.filtered && can_widen(material->type);
     /* what composes M of sources puts the rest before it, too */
     const _Bool composes =
         settings.source_count && material->type->extension && material->type->extension(MUSURF_MAP_ID);
-    if ((jacobian.value || material->tension) && !composes)
+    if ((jacobian.value || material->tension || widens) && !composes)
         good = good && vary_transform(material, &settings, place, error);
     good = good && compile_somehow(material, &settings, place, error);
     if (good && settings.source_count)
         good = (material->varying = mu_varying_make(&settings, material->compiled, place, error)) != NULL;
+    if (good && material->normal_map) mu_normal_map_bind(material->normal_map, material);
     mu_settings_free(&settings);
     if (!good) mu_material_free(material);
     return good;
@@ -294,6 +305,7 @@ void mu_material_free(mu_material *material) {
     if (material->blend) material->blend->compiled[0] = NULL;
     mu_blend_free(material->blend, material->type);
     mu_varying_free(material->varying);
+    mu_normal_map_free(material->normal_map);
     mu_jacobian_free(&material->jacobian);
     *material = (mu_material){0};
 }

@@ -5,7 +5,7 @@
  *
  * "material": "vendor.name" names a type of vendor_material.so, looked for where search.h
  * says. Everything else in the object is a parameter of that table, except
- * the keys that the renderer itself serves ("jacobian"). What may vary may have a source (source.h) instead of a value.
+ * the keys that the renderer itself serves ("jacobian", "normal_map"). What may vary may have a source (source.h) instead of a value.
  * Warnings of a plugin go to stderr. {"file": name} stands for the material in that file (material_file.h).
  */
 #ifndef MU_MATERIAL_H
@@ -30,6 +30,7 @@ enum { MU_SLOT_TRANSFORM = 0, MU_SLOT_FOOTPRINT = 4, MU_SLOT_VALUES = 10, MU_SLO
 
 struct mu_varying;
 struct mu_blend;
+struct mu_normal_map;
 
 typedef struct mu_material {
     const musurf_material_type *type;
@@ -38,6 +39,7 @@ typedef struct mu_material {
     mu_jacobian jacobian; /* if any, "transform" is pushed through slots[0..3] at each hit */
     struct mu_varying *varying; /* parameters with sources; NULL: none */
     struct mu_blend *blend;     /* parameters between whose values materials are blended; `compiled` is its first */
+    struct mu_normal_map *normal_map; /* NULL: none, or one that leans nowhere */
     uint64_t digest;      /* of grids and pictures among its settings, which the document may only name */
     float transform[4];   /* the constant "transform", onto which the others go: M = J T transform */
     _Bool tension;        /* T transform is pushed through slots[0..3] at each hit: T of the mesh's deformation */

@@ -6,6 +6,7 @@
  */
 #include <OpenImageIO/imageio.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
@@ -153,10 +154,10 @@ double *read_raw(const char *file, const char *channel, int *width, int *height,
     return nullptr;
 }
 
-/* `count` channels side by side, whole-number codes as fractions of the largest: those of these names, and if it lacks one, an
- * error if they were `named` by somebody, else the first. */
+/* `count` channels side by side, whole-number codes as fractions of the largest, *step apart: those of these names, and if it
+ * lacks one, an error if they were `named` by somebody, else the first. */
 float *read_channels(const char *file, const char *const *names, bool named, int count, int *width, int *height,
-                     char *message, size_t size) {
+                     double *step, char *message, size_t size) {
     OIIO::ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);
     hints.attribute("oiio:RawColor", 1);
@@ -189,6 +190,7 @@ float *read_channels(const char *file, const char *const *names, bool named, int
         for (int k = 0; k < count; k++) values[i * (size_t)count + (size_t)k] = all[i * (size_t)spec.nchannels + (size_t)chosen[k]];
     *width = spec.width;
     *height = spec.height;
+    *step = spec.format.is_floating_point() ? 0 : 1 / (std::ldexp(1.0, 8 * (int)spec.format.size()) - 1);
     return values;
 }
 
@@ -225,10 +227,10 @@ mu_oiio_read_raw(const char *file, const char *channel, int *width, int *height,
  * memory, or NULL and one line in `message`. Not for two threads at once either. */
 extern "C" __attribute__((visibility("default"))) float *
 mu_oiio_read_channels(const char *file, const char *const *names, int named, int count, int *width, int *height,
-                      char *message, size_t size) {
+                      double *step, char *message, size_t size) {
     try {
         const Silence silence;
-        return read_channels(file, names, named != 0, count, width, height, message, size);
+        return read_channels(file, names, named != 0, count, width, height, step, message, size);
     } catch (const std::exception &trouble) {
         return refuse(message, size, trouble.what());
     } catch (...) {

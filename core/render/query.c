@@ -37,6 +37,10 @@ static _Bool find_probe(const mu_material *material, const mu_place *place, mu_p
                                  "makes the material vary over the surface; here one point is looked at, so "
                                  "give its M as \"transform\"");
     }
+    if (material->normal_map) {
+        const mu_place normal_map = mu_place_member(place, "normal_map");
+        return mu_place_fail_key(&normal_map, error, "makes the frame vary over the surface; here one point is looked at, in its own frame");
+    }
     const musurf_probe *probe = material->type->extension(MUSURF_PROBE_ID);
     if (!probe || probe->size < sizeof *probe || !probe->evaluate || !probe->sample) {
         const mu_place id = mu_place_member(place, "material");

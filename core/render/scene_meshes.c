@@ -183,7 +183,8 @@ _Bool mu_check_meshes(mu_reader *reader) {
 }
 
 static _Bool has_direction(const mu_scene *scene, uint32_t material) {
-    return (scene->materials[material].material.plan.needs & MUSURF_NEEDS_TANGENT) != 0;
+    const mu_material *of = &scene->materials[material].material;
+    return of->plan.needs & MUSURF_NEEDS_TANGENT || of->normal_map;
 }
 
 /* Once for a mesh: mesh_tangents.c has to choose. */

@@ -41,6 +41,7 @@ static _Bool check_uvs(mu_reader *reader, const mu_place *place, const mu_object
     const mu_material *const of = &scene->materials[material].material;
     const mu_source *source;
     if (of->jacobian.map != MU_JACOBIAN_NONE && !what) what = "its \"jacobian\"";
+    if (of->normal_map && !what) what = "its \"normal_map\"";
     for (size_t i = 0; !what && (source = mu_material_source(of, i)); i++)
         if (source->kind != MU_SOURCE_ATTRIBUTE) what = source->param->name;
     if (object->shape != MU_MESH || scene->meshes[object->mesh].uvs || !what) return 1;

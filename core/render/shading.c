@@ -4,12 +4,12 @@
  */
 #include "core/render/shading.h"
 #include "core/render/blend.h"
+#include "core/render/normal_turn.h"
 #include "core/render/varying.h"
 
 enum { TRANSMISSION = MUSURF_GLOSSY_TRANSMISSION | MUSURF_DELTA_TRANSMISSION | MUSURF_DIFFUSE_TRANSMISSION };
 
-/* n and a tangent as near to t as can be. */
-static mu_frame frame_about(mu_vec3 n, mu_vec3 t) {
+mu_frame mu_shading_frame(mu_vec3 n, mu_vec3 t) {
     t = mu_normalise(mu_sub(t, mu_scale(n, mu_dot(n, t))));
     if (!(mu_dot(t, t) > 0.5f)) /* t was along n */
         t = mu_normalise(mu_cross(n, fabsf(n.x) < 0.5f ? mu_v3(1, 0, 0) : mu_v3(0, 1, 0)));
@@ -101,7 +101,7 @@ void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *
     }
     mu_vec3 local = mu_to_local(&shading->frame, wo);
     if ((local.z > 0) != front) {
-        shading->frame = frame_about(shading->ng, shading->frame.t);
+        shading->frame = mu_shading_frame(shading->ng, shading->frame.t);
         local = mu_to_local(&shading->frame, wo);
     }
     const float *slots = NULL;
@@ -113,6 +113,11 @@ void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *
     }
     if (material->tension) {
         mu_shading_tension(hit, turned, transform, m);
+        transform = m;
+        slots = shading->slots;
+    }
+    if (material->normal_map && transform != m) { /* it may be widened in there */
+        for (int i = 0; i < 4; i++) m[i] = transform[i];
         transform = m;
         slots = shading->slots;
     }
@@ -136,6 +141,7 @@ void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *
         attributes_at(scene, hit, attributes);
         shading->compiled = mu_blend_at(material->blend, footprint, attributes);
     }
+    if (material->normal_map) mu_normal_turn(shading, material, beam, wo, turned);
 }
 
 void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,

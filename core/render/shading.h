@@ -8,7 +8,7 @@
  * the material sees by the sign of wo.z. Where an interpolated normal faces away from a
  * viewer who sees the front, the geometric normal takes its place, so that silhouettes have no black rim. A
  * direction counts only if the shading frame and the geometric normal agree on its side: nothing leaks
- * through, nothing is lit from behind.
+ * through, nothing is lit from behind. A normal map turns the frame last of all (normal_turn.h).
  */
 #ifndef MU_SHADING_H
 #define MU_SHADING_H
@@ -38,6 +38,9 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
 
 /* The same without the closure: `closure` and `lobes` are not set. Not to be moved. */
 void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo, const mu_beam *beam);
+
+/* n, a unit vector, and a tangent as near to t as can be. */
+mu_frame mu_shading_frame(mu_vec3 n, mu_vec3 t);
 
 /* What comes of the material's constant `transform` where M varies: first that, then the tension T of the mesh, then the
  * Jacobian of the map: M = P J P^-1 T transform, P = [dpdu dpdv] in the frame (t, b) of the deformed surface. At rest P is

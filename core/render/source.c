@@ -47,7 +47,7 @@ static _Bool read_pair(const mu_place *parent, const char *key, double least, do
     return !place.value || mu_place_numbers(&place, 2, least, 1e6, out, error);
 }
 
-static _Bool read_placement(mu_placement *out, const mu_place *place, mu_error *error) {
+_Bool mu_source_placement(mu_placement *out, const mu_place *place, mu_error *error) {
     static const char *const wraps[] = {"repeat", "clamp", "mirror", NULL};
     static const char *const filters[] = {"covariance", "none", NULL};
     const mu_place wrap = mu_place_member(place, "wrap"), filter = mu_place_member(place, "filter");
@@ -77,7 +77,7 @@ static _Bool read_picture(mu_source *source, const mu_place *place, const char *
     request.names = channels.value ? names : source->param->kind == MUSURF_MATRIX ? of_tension : NULL;
     request.param = direction ? NULL : source->param;
     return read_pair(place, "range", -1e6, request.range, error) &&
-           read_placement(&source->placement, place, error) &&
+           mu_source_placement(&source->placement, place, error) &&
            mu_source_picture(&source->picture, &file, &request, source->placement.wrap, error);
 }
 

@@ -51,6 +51,8 @@ _Bool mu_source_blends(const musurf_param *param);
 /* Is this an object that names a source? */
 _Bool mu_source_is(const json_t *value);
 _Bool mu_source_read(mu_source *source, const musurf_param *param, const mu_place *place, mu_error *error);
+/* Of the object at `place`: wrap, filter, scale and offset, where they are not what they are by default. */
+_Bool mu_source_placement(mu_placement *out, const mu_place *place, mu_error *error);
 void mu_source_free(mu_source *source);
 /* Is it a picture of equal texels? Then it is a constant. */
 _Bool mu_source_is_constant(const mu_source *source, double *values);

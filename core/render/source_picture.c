@@ -42,11 +42,12 @@ _Bool mu_source_picture(mu_mipmap *picture, const mu_place *file, const mu_pictu
                         mu_wrap wrap, mu_error *error) {
     const char *name;
     int width, height;
+    double step = 0;
     if (!mu_place_string(file, &name, error)) return 0;
     char *path = mu_document_beside(file->document, name);
     mu_error why = {.text = ""};
     float *values = path ? mu_image_read_channels(path, request->names, request->named, request->count,
-                                                  &width, &height, &why)
+                                                  &width, &height, &step, &why)
                          : NULL;
     free(path);
     if (!values) return mu_place_fail(file, error, "%s", why.text[0] ? why.text : "not enough memory");
@@ -57,6 +58,7 @@ _Bool mu_source_picture(mu_mipmap *picture, const mu_place *file, const mu_pictu
     if (good && !mu_mipmap_make(picture, width, height, request->count, wrap))
         good = mu_place_fail(file, error, "not enough memory for %d x %d texels", width, height);
     if (good) memcpy(picture->texels, values, count * sizeof *values);
+    if (request->step) *request->step = step;
     free(values);
     return good;
 }

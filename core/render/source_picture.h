@@ -13,6 +13,7 @@ typedef struct mu_picture_request {
     int count;
     double range[2];           /* what 0 and 1 stand for */
     const musurf_param *param; /* whose limits hold; NULL: none but finite */
+    double *step;              /* out: between the codes of a whole-number file, before `range`; NULL: not asked for */
 } mu_picture_request;
 
 /* `count` texts, or, of one, that alone; borrowed. */

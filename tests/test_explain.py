@@ -48,7 +48,7 @@ NEEDS = {
     "two_sided": {"objects": [dict(BALL, two_sided=True)]},
     "jacobians": with_material(jacobian={"map": "power_shear", "amount": 2, "exponent": 5}),
     "textures": with_material(alpha={"texture": "sky.exr"}),
-    "normal_maps": with_material(normal_map={"file": "sky.exr", "range": [-1, 1]}),
+    "normal_maps": with_material(normal_map={"file": "sky.exr", "range": [1, 2]}),
     "attributes": {"objects": [{"mesh": "square", "material": {"material": "musurf.microfacet", "alpha": {"attribute": "age"}}}],
                    "meshes": {"square": {"file": "square.ply"}}},
     "expressions": with_material(alpha={"expression": "0.1 + u*u"}),

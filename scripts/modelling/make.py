@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The musurf authors
-"""Writes the meshes and the direction map that scenes/figures and scenes/ibl show; see --help."""
+"""Writes the meshes, the direction map and the normal map that scenes/figures and scenes/ibl show; see --help."""
 import argparse
 import pathlib
 import sys
 
-from . import balloon, creatures, mesh, teapot, vase, wave
+from . import balloon, creatures, hammered, mesh, teapot, vase, wave
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "build" / "meshes"  # where the scene files look for them
 
@@ -28,14 +28,15 @@ def write(folder=FOLDER, fine=1.0):
     for name, shape in meshes(fine):
         files.append(folder / name)
         mesh.write(shape, files[-1])
-    files.append(folder / "wave.png")
-    wave.write(files[-1])
+    for name, picture in ("wave.png", wave.picture()), ("hammered.png", hammered.picture()):
+        files.append(folder / name)
+        wave.write(files[-1], picture)
     return files
 
 
 def main(arguments):
     parser = argparse.ArgumentParser("scripts/meshes", description="Makes the meshes of scenes/figures and scenes/ibl by formulas: rubber animals in poses, a "
-                                     "balloon in 24 states, a vase, a teapot; PLY with texture coordinates, the same bytes every time; and a direction map, wave.png. Prints their names. Exit 0; 2 on wrong usage.")
+                                     "balloon in 24 states, a vase, a teapot; PLY with texture coordinates, the same bytes every time; and a direction map, wave.png, and a normal map, hammered.png. Prints their names. Exit 0; 2 on wrong usage.")
     parser.add_argument("-o", metavar="DIR", dest="output", type=pathlib.Path, default=FOLDER, help="default: build/meshes, where the scenes look")
     parser.add_argument("--fine", type=float, default=1.0, help="points along each direction, of the usual number (default: 1)")
     options = parser.parse_args(arguments)

@@ -34,12 +34,13 @@ def picture(side=SIDE):
     return np.round(np.stack([127.5 + 127.5 * np.cos(a), 127.5 + 127.5 * np.sin(a), np.zeros_like(a)], -1)).astype(np.uint8)
 
 
-def write(path, side=SIDE):
-    """PNG; beside, then renamed."""
+def write(path, pixels):
+    """PNG of [rows, columns, 3] of uint8; beside, then renamed."""
+    height, width = pixels.shape[:2]
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    rows = np.concatenate([np.zeros((side, 1), np.uint8), picture(side).reshape(side, -1)], 1)
-    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", side, side, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)) + chunk(b"IEND", b"")
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], 1)
+    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)) + chunk(b"IEND", b"")
     fresh = path.with_name(f"{path.name}.{os.getpid()}.new")
     fresh.write_bytes(data)
     fresh.replace(path)

@@ -69,6 +69,13 @@ class Prefilter(unittest.TestCase):
         self.assertEqual((done.returncode, done.out), (0, ""), done.err)
         return done.err
 
+    def test_names_of_files(self):
+        exr.write(self.env, {name: numpy.ones((8, 16)) for name in "RGB"})
+        done = musurf("ibl", "prefilter", self.env, "-o", self.out.with_suffix(".png"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("must be a name that ends in .exr", done.err)
+        self.assertFalse(self.out.with_suffix(".png").exists())
+
     def test_constant(self):
         """Weights sum to 1 within the roundings of some 2^-24 in each of two interpolations and the sum."""
         self.make({name: numpy.full((50, 90), value) for name, value in (("R", 0.25), ("G", 3.0), ("B", 1e-3))}, "--samples", 64)

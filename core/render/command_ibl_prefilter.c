@@ -145,5 +145,7 @@ int mu_command_ibl_prefilter(int argc, char **argv) {
         }
     }
     if (!job.image || !job.output) return mu_refuse(&usage, "an image ENV and -o OUT.exr are needed");
+    if (!mu_output_ends_in(job.output, ".exr"))
+        return mu_refuse(&usage, "-o is \"%s\"; it must be a name that ends in .exr", job.output);
     return answer(&job, progress);
 }

@@ -41,6 +41,15 @@ class Plot(unittest.TestCase):
             self.assertNotRegex(file.read_text(), r"(?i)\bnan\b|\binf\b")
             return xml.etree.ElementTree.parse(file).getroot().findall(SVG + "svg")
 
+    def test_many_samples(self):
+        """256 of 65536, from the first to the last."""
+        dots = [[circle for circle in panel.iter(SVG + "circle") if circle.get("fill") == "#27c"] for panel in self.panels({**ASK, "N": 65536})]
+        few = [[circle for circle in panel.iter(SVG + "circle") if circle.get("fill") == "#27c"] for panel in self.panels({**ASK, "N": 256})]
+        for many, some in zip(dots, few):
+            self.assertEqual((len(many), len(some)), (256, 256))
+            for end in (0, -1):
+                self.assertAlmostEqual(float(many[end].get("cx")), float(some[end].get("cx")), delta=0.011)
+
     def test_points_stand_where_the_axis_says(self):
         panels = self.panels(ASK)
         axis = answers(musurf("ibl", "axis", stdin=[ASK]))[0]

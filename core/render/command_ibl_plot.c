@@ -17,6 +17,7 @@ static const mu_usage usage = {
     "as musurf\n"
     "ibl axis reads it.\n",
     options,
+    "Of more than 256 samples 256 are drawn, evenly, and the picture says so.\n"
     "With a roughness of 0, or a view along the horizon, there is no density to draw, only the points.\n"
     "\n"
     "example:\n"

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { SHOWN = 256 };
 enum { SIDE = 360, MARGIN = 24, HEAD = 46, FOOT = 64, GRID = 120, LEVELS = 16, CURVE = 256, DISC = 32 };
 static const double pi = 3.14159265358979323846;
 
@@ -147,6 +148,11 @@ static void draw_disc(const picture *p, const double m[3]) {
     fputs("z\"/>\n", p->out);
 }
 
+/* How many samples are drawn: more are no longer told apart. */
+static size_t shown(const mu_ibl_settings_d *settings) {
+    return settings->samples < SHOWN ? settings->samples : SHOWN;
+}
+
 static _Bool draw_panel(picture *p, mu_ibl_space space, const char *title) {
     static const double up[3] = {0, 0, 1};
     const mu_ibl_settings_d *s = &p->ask->settings;
@@ -167,9 +173,9 @@ static _Bool draw_panel(picture *p, mu_ibl_space space, const char *title) {
     draw_line(p, "stroke=\"#f80\" stroke-width=\"1.5\"", CURVE, boundary_at);
     draw_line(p, "stroke=\"#f80\" stroke-width=\"1\" stroke-dasharray=\"2 3\"", CURVE / 4, axis_at);
     draw_line(p, "stroke=\"#d50\" stroke-width=\"2.5\"", CURVE / 4, clamped_at);
-    for (size_t j = 0; j < s->samples; j++) {
+    for (size_t i = 0, n = shown(s); i < n; i++) { /* evenly, both ends among them */
         double m[3];
-        mu_ibl_axis_sample_d(a, s->samples, j, m);
+        mu_ibl_axis_sample_d(a, s->samples, n < s->samples ? i * (s->samples - 1) / (n - 1) : i, m);
         if (space == MU_IBL_REFLECTED) draw_disc(p, m);
         draw_point(p, m, 2.2, "fill=\"#27c\"");
     }
@@ -199,14 +205,16 @@ _Bool mu_ibl_draw(const mu_ibl_question *ask, FILE *out) {
         !draw_panel(&p, MU_IBL_NORMALS, "micronormals: D cos") ||
         !draw_panel(&p, MU_IBL_REFLECTED, "reflected directions: f cos"))
         return 0;
+    char some[48] = "";
+    if (shown(&ask->settings) < ask->settings.samples) snprintf(some, sizeof some, " (%zu of them drawn)", shown(&ask->settings));
     fprintf(out,
             "<text x=\"%d\" y=\"%d\" font-size=\"13\">sigma %.4g, %.4g at %.4g rad; wo %.3f, %.3f, %.3f; t "
             "%.4f, %.4f; "
-            "tau %.4g, %.4g; delta %.4g; width %.4g, length %.4g, zeta %.4g, radius %.4g; N %zu</text>\n",
+            "tau %.4g, %.4g; delta %.4g; width %.4g, length %.4g, zeta %.4g, radius %.4g; N %zu%s</text>\n",
             MARGIN, HEAD + SIDE + 24, ask->lobe.sigma[0], ask->lobe.sigma[1],
             atan2(ask->lobe.turn[1], ask->lobe.turn[0]), ask->wo[0], ask->wo[1], ask->wo[2], p.axis.t[0],
             p.axis.t[1], p.axis.tau[0], p.axis.tau[1], p.axis.delta, p.axis.width, p.axis.length, p.axis.zeta,
-            p.axis.radius, ask->settings.samples);
+            p.axis.radius, ask->settings.samples, some);
     fprintf(out,
             "<text x=\"%d\" y=\"%d\" font-size=\"13\" fill=\"#555\">orange: boundary, axis (thick above the "
             "horizon); red: farthest; green: closest, shifted (rings); "

@@ -35,7 +35,7 @@ class Render(unittest.TestCase):
                  "integrator": {"depth": 1, "samples": samples, **integrator}, "objects": objects, "lights": [light]}
         file, out = pathlib.Path(self.folder.name, "scene.json"), pathlib.Path(self.folder.name, "out.exr")
         file.write_text(json.dumps(scene))
-        done = musurf("render", file, "-o", out, "--integrator", by, "--quiet", *options)
+        done = musurf("render", file, "-o", out, *(("--integrator", by) if by else ()), "--quiet", *options)
         if not good:
             return done
         self.assertEqual(done.returncode, 0, done.err)
@@ -182,6 +182,21 @@ class Render(unittest.TestCase):
             done = self.render("major-axis", objects, light, [0, -0.98, 0.2], good=False)
             self.assertEqual(done.returncode, 2)
             self.assertIn(word, done.err)
+
+    def test_settings_of_other_techniques(self):
+        """In a scene that names one; in one that names none, if nobody does."""
+        ball = [{"shape": "sphere", "radius": 1, "material": microfacet(alpha=0.2)}]
+        refused = lambda asked, **more: self.render(asked, ball, STUDIO, [0, -0.98, 0.2], size=4, good=False, integrator=more)
+        for by, key, value in (("path", "k", 1), ("path", "reads", 8), ("lobe", "beta", 2), ("bent-normal", "reads", 8), ("major-axis", "tails", True),
+                               ("filtered", "means", False), ("split", "appendix_c", "printed")):
+            done = refused(by, by=by, **{key: value})
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"$.integrator.{key}: is of no effect by \"{by}\"", done.err)
+        for by, code in (("major-axis", 0), (None, 2)):
+            done = refused(by, k=1)
+            self.assertEqual(done.returncode, code, done.err)
+        self.assertIn("$.integrator.k is of no effect on paths", done.err)
+        self.assertEqual(refused("path", by="lobe", tails=False).returncode, 0)  # to compare
 
 
 if __name__ == "__main__":

@@ -26,14 +26,17 @@ typedef struct mu_ibl_read {
  *     grain, and sharper than h1.
  * MU_IBL_MAJOR_AXIS: N reads along the axis, all alike, Eq. (5).
  * MU_IBL_LOBE: N reads all over the lobe, each as wide as the lobe is across where it stands (spread.h).
- * MU_IBL_FILTERED: n x n reads, the largest square up to N, by filtered importance sampling (importance.h). */
-typedef enum mu_ibl_technique {
-    MU_IBL_SPLIT,
-    MU_IBL_BENT_NORMAL,
-    MU_IBL_MAJOR_AXIS,
-    MU_IBL_LOBE,
-    MU_IBL_FILTERED
-} mu_ibl_technique;
+ * MU_IBL_FILTERED: n x n reads, the largest square up to N, by filtered importance sampling (importance.h).
+ * The one list of them, with their names in scenes and for people. */
+#define MU_IBL_FOR_TECHNIQUES(X)               \
+    X(SPLIT, "split", "split integral")        \
+    X(BENT_NORMAL, "bent-normal", "bent normal") \
+    X(MAJOR_AXIS, "major-axis", "major axis")  \
+    X(LOBE, "lobe", "whole lobe")              \
+    X(FILTERED, "filtered", "filtered importance")
+#define MU_IBL_TECHNIQUE_(name, key, title) MU_IBL_##name,
+typedef enum mu_ibl_technique { MU_IBL_FOR_TECHNIQUES(MU_IBL_TECHNIQUE_) MU_IBL_TECHNIQUES } mu_ibl_technique;
+#undef MU_IBL_TECHNIQUE_
 
 /* The shape of a distribution beside GGX's: that many times as far from the mean is the slope within which a share of all are, at
  * MU_IBL_TAIL shares from 0 to nearly 1; GGX of the same Sigma is 1 throughout. */

@@ -179,6 +179,9 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
 
 _Bool mu_image_light_takes(const mu_scene *scene, mu_error *error) {
     mu_lobe_source source;
+    if (scene->integrator.idle)
+        return mu_fail(error, "$.integrator.%s is of no effect on paths: \"by\" or --integrator must name a technique that has it",
+                       scene->integrator.idle);
     for (uint32_t i = 0; scene->integrator.by_image && i < scene->light_count; i++)
         if (scene->lights[i].kind == MU_DIRECTIONAL || scene->lights[i].kind == MU_POINT || scene->lights[i].kind == MU_RECTANGLE_LIGHT)
             return mu_fail(error, "light %u is no light around the scene: only --integrator path renders it", i);

@@ -46,6 +46,7 @@ typedef struct mu_integrator_settings {
     float k, beta;              /* of the major axis, as is this: core/ibl/ibl_real.h */
     mu_ibl_shift appendix_c;
     _Bool tails, means; /* of lobes: whether a distribution that is not GGX, and a mean slope, move the reads */
+    const char *idle;  /* a setting of theirs that the scene has though it names no technique; NULL: none */
     uint32_t depth;    /* longest path: number of scattering events; 1 = direct light only */
     uint32_t roulette; /* Russian roulette from this many events on */
     uint32_t samples;  /* per pixel, unless the command line says otherwise */

@@ -78,13 +78,40 @@ _Bool mu_read_film(mu_reader *reader) {
     return !place.value || mu_read_float(&place, "radius", 1e-3, 64, &film->filter_radius, error);
 }
 
-const char *const mu_integrators[] = {"path", "split", "bent-normal", "major-axis", "lobe", "filtered", NULL};
+#define KEY(name, key, title) key,
+const char *const mu_integrators[] = {"path", MU_IBL_FOR_TECHNIQUES(KEY) NULL};
 static const char *const shifts[] = {"symmetric", "printed", NULL};
 
 void mu_integrator_choose(mu_integrator_settings *integrator, size_t index) {
-    static const mu_ibl_technique techniques[] = {MU_IBL_SPLIT, MU_IBL_BENT_NORMAL, MU_IBL_MAJOR_AXIS, MU_IBL_LOBE, MU_IBL_FILTERED};
-    integrator->by_image = index > 0;
-    if (index) integrator->technique = techniques[index - 1];
+    integrator->by_image = index > 0, integrator->idle = NULL;
+    if (index) integrator->technique = (mu_ibl_technique)(index - 1);
+}
+
+/* What is a technique's own: the key, and the techniques, as bits of mu_integrators' indices. */
+#define INDEX(name, key, title) INDEX_##name,
+enum { INDEX_PATH, MU_IBL_FOR_TECHNIQUES(INDEX) };
+static const struct {
+    const char *key, *names;
+    unsigned techniques;
+} of_techniques[] = {{"reads", "major-axis, lobe and filtered", 1u << INDEX_MAJOR_AXIS | 1u << INDEX_LOBE | 1u << INDEX_FILTERED},
+                     {"k", "major-axis", 1u << INDEX_MAJOR_AXIS},
+                     {"beta", "major-axis", 1u << INDEX_MAJOR_AXIS},
+                     {"appendix_c", "major-axis", 1u << INDEX_MAJOR_AXIS},
+                     {"tails", "lobe", 1u << INDEX_LOBE},
+                     {"means", "lobe", 1u << INDEX_LOBE}};
+
+/* Refuses what the technique takes no notice of. The command line may name another: where the scene names none, it is asked later. */
+static _Bool touches(const mu_place *integrator, size_t by, const char **idle, mu_error *error) {
+    const _Bool named = mu_place_member(integrator, "by").value != NULL;
+    for (size_t i = 0; i < sizeof of_techniques / sizeof *of_techniques; i++) {
+        const mu_place place = mu_place_member(integrator, of_techniques[i].key);
+        if (!place.value || of_techniques[i].techniques >> by & 1) continue;
+        if (named)
+            return mu_place_fail(&place, error, "is of no effect by \"%s\": it is a setting of %s", mu_integrators[by],
+                                 of_techniques[i].names);
+        *idle = of_techniques[i].key;
+    }
+    return 1;
 }
 
 /* A number, or "auto". */
@@ -120,6 +147,7 @@ _Bool mu_read_integrator(mu_reader *reader) {
         return 0;
     integrator->appendix_c = shift ? MU_IBL_PRINTED : MU_IBL_SYMMETRIC;
     mu_integrator_choose(integrator, by);
+    if (!touches(&place, by, &integrator->idle, error)) return 0;
     const mu_place tails = mu_place_member(&place, "tails"), means = mu_place_member(&place, "means");
     if ((tails.value && !mu_place_flag(&tails, &integrator->tails, error)) ||
         (means.value && !mu_place_flag(&means, &integrator->means, error)))

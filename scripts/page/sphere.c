@@ -24,7 +24,7 @@
 /* The numbers of a view of it. */
 enum { SIZE, TECHNIQUE, TURN, EXPOSURE, LAMP_X, LAMP_Y, LAMP_Z, NUMBERS };
 /* After those of core/ibl. */
-enum { SAMPLED = MU_IBL_FILTERED + 1, LAMP };
+enum { SAMPLED = MU_IBL_TECHNIQUES, LAMP };
 
 struct page_sphere {
     const page_material *material;
@@ -41,13 +41,10 @@ typedef struct spot {
     float n[3], t[3], b[3], wo[3];
 } spot;
 
+#define TITLE(name, key, title) title,
 const char *page_technique_name(int technique) {
     static const char *const names[] = {
-        [MU_IBL_SPLIT] = "split integral",
-        [MU_IBL_BENT_NORMAL] = "bent normal",
-        [MU_IBL_MAJOR_AXIS] = "major axis",
-        [MU_IBL_LOBE] = "whole lobe",
-        [MU_IBL_FILTERED] = "filtered importance",
+        MU_IBL_FOR_TECHNIQUES(TITLE) /* those of core/ibl come first */
         [SAMPLED] = "sampled",
         [LAMP] = "lamp",
         [LAMP + 1] = NULL,

@@ -32,7 +32,7 @@ enum {
     ALBEDO_ROWS = 4,
     ALBEDO_COLUMNS = 2,
     ALBEDO_ROOTS = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS,
-    ALBEDO_HALVINGS = 9,
+    ALBEDO_HALVINGS = 10,
     ALBEDO_PATCH_FLOATS = 16 /* of values to a patch, or there is no room for it */
 };
 

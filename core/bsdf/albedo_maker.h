@@ -8,25 +8,27 @@
 
 #include "core/bsdf/albedo.h"
 
-/* Nodes along a side of a root patch whose values are kept until it is done, what is between them included. */
-enum { ALBEDO_FINEST = 7, ALBEDO_SIDE = (1 << ALBEDO_FINEST) + 1 };
+/* Values that were evaluated already: each in one of so many places, by where it is. */
+enum { ALBEDO_KNOWN = 1 << 13 };
+typedef struct albedo_known {
+    uint32_t where; /* 0: none */
+    float value;
+} albedo_known;
 
 /* A side of a table while its patches grow, one root patch after the other. */
 typedef struct patch_maker {
     const albedo_source *source;
     const mu_albedo *table;
     mu_albedo_side *side;
-    float *values;                        /* of its nodes, and then of its cells */
-    albedo_patch *patch;                  /* its own */
-    size_t floats, most;                  /* that it may take, and patches */
-    size_t nodes;                         /* so far */
-    size_t pending;                       /* patches that are still to grow */
-    float turn;                           /* +1; -1 from below */
-    int quadrant, column, row;            /* of the root patch */
-    int parted;                           /* light is transmitted, too */
-    float seen[ALBEDO_SIDE][ALBEDO_SIDE]; /* [u][S]: what was evaluated already, else NaN */
-    float edge[ALBEDO_ROWS]
-              [ALBEDO_SIDE]; /* of the root patches of the column before, where they meet those of this */
+    float *values;             /* of its nodes, and then of its cells */
+    albedo_patch *patch;       /* its own */
+    size_t floats, most;       /* that it may take, and patches */
+    size_t nodes;              /* so far */
+    size_t pending;            /* floats that patches need which are still to grow */
+    float turn;                /* +1; -1 from below */
+    int quadrant, column, row; /* of the root patch */
+    int parted;                /* light is transmitted, too */
+    albedo_known known[ALBEDO_KNOWN];
 } patch_maker;
 
 /* A closure of the source; 0 if it sees nothing. */

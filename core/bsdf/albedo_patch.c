@@ -17,7 +17,9 @@
 
 #if MU_REAL_BITS == 24
 
-enum { LEAF = 2, FINEST = ALBEDO_FINEST, SIDE = ALBEDO_SIDE };
+enum { LEAF = 2, FINEST = ALBEDO_HALVINGS + 1, KNOWN_BITS = 13 };
+_Static_assert(ALBEDO_KNOWN == 1 << KNOWN_BITS && 8ull * (4 << FINEST) * ((1 << FINEST) + 1) < 0xff000000u,
+               "values have places of their own");
 static const float least = 1e-7f; /* what is lost at least: the lobe exists everywhere */
 
 /* A part of a root patch, along u and S: the at-th of 2^level, in 2^log cells. */
@@ -39,11 +41,15 @@ float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
 
 /* The value at j, i of 2^log each of the root patch. */
 static float value_at(patch_maker *m, int j, int log_u, int i, int log_s) {
-    const double u = (double)j / (1 << log_u), s = (double)i / (1 << log_s);
-    if (log_u > FINEST || log_s > FINEST) return mu_albedo_evaluate(m, u, s);
-    float *known = &m->seen[m->table->columns == 1 ? 0 : j << (FINEST - log_u)][i << (FINEST - log_s)];
-    if (isnan(*known)) *known = mu_albedo_evaluate(m, u, s);
-    return *known;
+    const int round = m->table->columns == 1;
+    const uint32_t column = (uint32_t)(m->quadrant * m->table->columns + m->column),
+                   across = round ? 0 : (uint32_t)j << (FINEST - log_u),
+                   up = ((uint32_t)m->row << FINEST) + ((uint32_t)i << (FINEST - log_s)),
+                   where = 1 + up + ((4 << FINEST) + 1) * (across + ((1 << FINEST) + 1) * column);
+    albedo_known *const k = &m->known[where * 2654435769u >> (32 - KNOWN_BITS)];
+    if (k->where != where)
+        *k = (albedo_known){where, mu_albedo_evaluate(m, (double)j / (1 << log_u), (double)i / (1 << log_s))};
+    return k->value;
 }
 
 /* The value at j, i of a part whose cells are halved `more` times along an axis, or -1 for neither. */
@@ -110,9 +116,9 @@ static size_t floats_of(const rect *r) {
     return (across + 1) * (up + 1) + across * up;
 }
 
-/* May a part have twice as many cells, as one patch or two? What is pending still needs 13 floats each. */
+/* May a part have twice as many cells, as one patch or two, besides what is pending? */
 static int has_room(const patch_maker *m, const rect *r, int patches) {
-    const size_t needed = 2 * floats_of(r) + 13 * m->pending;
+    const size_t needed = 2 * floats_of(r) + m->pending;
     return m->nodes + m->side->cells + needed <= m->floats && m->side->patches + (size_t)patches <= m->most;
 }
 
@@ -179,26 +185,11 @@ static void fill(patch_maker *m, uint32_t patch, rect r, size_t facets) {
     m->patch[patch] = (albedo_patch){.cell = m->side->cells, .child = child, .axis = (uint8_t)axis};
     const size_t so_far = m->source->effort->facets;
     r.level[axis]++, r.at[axis] *= 2, r.log[axis]--;
-    m->pending++;
+    m->pending += floats_of(&r);
     fill(m, child, r, facets > so_far ? so_far + (facets - so_far) / 4 * 3 : so_far);
-    m->pending--;
+    m->pending -= floats_of(&r);
     r.at[axis]++;
     fill(m, child + 1, r, facets);
-}
-
-/* Nothing is known of a root patch but the edges where it meets those before. */
-static void start(patch_maker *m, int k) {
-    float below[SIDE];
-    const int row = k % ALBEDO_ROWS, column = k / ALBEDO_ROWS % m->table->columns;
-    if (column > 0 || row > 0)
-        for (int j = 0; j < SIDE; j++) below[j] = m->seen[j][SIDE - 1];
-    for (int i = 0; i < SIDE; i++) {
-        if (k > 0) m->edge[m->row][i] = m->seen[SIDE - 1][i];
-        for (int j = 0; j < SIDE; j++) m->seen[j][i] = NAN;
-    }
-    m->row = row, m->column = column, m->quadrant = k / ALBEDO_ROWS / m->table->columns;
-    for (int i = 0; column > 0 && i < SIDE; i++) m->seen[0][i] = m->edge[row][i];
-    for (int j = 0; row > 0 && j < SIDE; j++) m->seen[j][0] = below[j];
 }
 
 void mu_albedo_grow(patch_maker *m, size_t facets) {
@@ -212,8 +203,9 @@ void mu_albedo_grow(patch_maker *m, size_t facets) {
     side->patch = m->patch, side->patches = (uint32_t)roots, side->cells = 0, m->nodes = 0;
     for (int k = 0; k < roots; k++) {
         const size_t before = effort->facets;
-        start(m, k);
-        m->pending = (size_t)(roots - 1 - k);
+        m->row = k % ALBEDO_ROWS, m->column = k / ALBEDO_ROWS % m->table->columns;
+        m->quadrant = k / ALBEDO_ROWS / m->table->columns;
+        m->pending = (size_t)(roots - 1 - k) * floats_of(&whole);
         /* most of the work is for few of them: each may take all but some for the others */
         fill(m, (uint32_t)k, whole, before + (k == roots - 1 ? facets : facets / 8 * 7));
         facets -= effort->facets - before < facets ? effort->facets - before : facets;

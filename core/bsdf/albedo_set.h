@@ -28,7 +28,7 @@ enum {
     ALBEDO_GRID_MOST = 1 << 13
 };
 /* Work that refining the tables of a surface may take (albedo_effort): */
-enum { ALBEDO_FACETS = 80000000 };
+enum { ALBEDO_FACETS = 110000000 };
 /* How far a roughness is from one to another, all as log2: linear in A^1.5 / (1 + A^1.5), which follows both limits. */
 float mu_albedo_share(float log_a, float from, float to);
 

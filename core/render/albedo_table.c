@@ -22,8 +22,8 @@
 #define TWO_PI 6.28318530717958647692
 
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
-#define SIGMA_STEP 0.5f
-enum { SIGMAS_MOST = 12 };
+#define SIGMA_STEP 0.25f
+enum { SIGMAS_MOST = 16 };
 /* What a node may be off; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
 #define ENOUGH 2e-4
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11, PIECES = 1 << 12 };
@@ -42,6 +42,7 @@ typedef struct work {
     double root[3]; /* of the moments before M: lower triangle; 0: a mirror, which no M makes rough */
     const mu_ibl_lobe_f *lobe;
     size_t most; /* calls of a node */
+    _Bool drawn; /* samples do better than directions */
 } work;
 
 /* A view in the frame of the lobe's axes: by how it is found in the table. */
@@ -170,6 +171,7 @@ static void fill(void *context, uint32_t row) {
     seat s;
     const _Bool made = seat_make(w, first, second, &s);
     mu_even_effort effort = {ENOUGH, w->most, 0};
+    if (w->drawn) s.source.lobe = NULL;
     for (uint32_t i = 0; i < t->heights; i++, rgb += 3) {
         float v[3];
         double wo[3];
@@ -231,6 +233,19 @@ static _Bool is_even(const work *w) {
     return even;
 }
 
+/* Is f noise, as a random walk's, so that samples are to be asked? Seen from a place like any other. */
+static _Bool is_drawn(const work *w) {
+    seat s;
+    mu_even_effort effort = {ENOUGH, LEAST_CALLS * 4, 0};
+    float v[3];
+    double wo[3];
+    if (!seat_make(w, 0, 0, &s)) return 0;
+    view_of(s.sigma, (place){0.6f, 0.1f}, v);
+    if (seat_look(w, &s, v, wo)) (void)mu_even_light(&s.source, wo, &effort);
+    seat_free(&s);
+    return effort.drawn;
+}
+
 _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
                            uint32_t threads, mu_error *error) {
@@ -243,11 +258,13 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
         place_sigmas(t, low, high);
     }
     const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
+    w.drawn = is_drawn(&w);
     if (varies) t->heights = 32;
-    if (material->plan.needs & MUSURF_NEEDS_TANGENT) {
+    if (map || material->plan.needs & MUSURF_NEEDS_TANGENT) {
         const _Bool even = is_even(&w);
-        t->azimuths = varies ? 64 : even ? 128 : 192;
-        if (!varies && !even) t->heights = 96;
+        if (varies) t->azimuths = even ? 64 : 32; /* else taken as if M turned it, which is off by more */
+        else t->azimuths = even ? 128 : w.drawn ? 48 : 192; /* what is noise needs samples, and is smooth */
+        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 96;
         t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
     }
     const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;

@@ -97,13 +97,11 @@ static mu_even_mean converge_by_directions(const mu_even_source *s, const double
 mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], mu_even_effort *effort) {
     if (s->slopes) return by_slopes(s, wo);
     if (!s->lobe) return converge_by_samples(s, effort);
-    const _Bool first = effort->drawn;
-    mu_even_mean mean = first ? converge_by_samples(s, effort) : converge_by_directions(s, wo, effort);
+    const mu_even_mean mean = converge_by_directions(s, wo, effort);
     if (mean.error <= 2 * effort->enough) return mean; /* the other way would take as long for little */
-    const mu_even_mean other = first ? converge_by_directions(s, wo, effort) : converge_by_samples(s, effort);
-    if (!(other.error < mean.error)) return mean;
-    effort->drawn = !first;
-    return other;
+    const mu_even_mean other = converge_by_samples(s, effort);
+    effort->drawn = other.error < mean.error;
+    return effort->drawn ? other : mean;
 }
 
 mu_even_mean mu_even_light_shifted(const mu_even_source *s, const double wo[3], size_t batches, size_t each,

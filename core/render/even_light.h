@@ -30,7 +30,7 @@ typedef struct mu_even_mean {
 typedef struct mu_even_effort {
     double enough;
     size_t most;
-    _Bool drawn; /* in: samples first; out: samples did better */
+    _Bool drawn; /* out: samples did better than directions */
 } mu_even_effort;
 mu_even_mean mu_even_light(const mu_even_source *source, const double wo[3], mu_even_effort *effort);
 

@@ -13,6 +13,10 @@
  * LEAST ln N at least. Where N is too small for so narrow a lobe, all are wider, OVERLAP of their distance, so that the gaps between them
  * close: less, and a lamp is a row of beads. Samples of a pixel look between each other's reads, and so may be as much narrower as they are many.
  *
+ * A filtered level falls off with the cosine to its middle, a wide lobe seen from above does not. So every fourth read (WIDE) is
+ * wider, 1 + 12 alpha^1.5 times: of what their sum is off from GGX's f cos, seen from above, that leaves less than half at alphas of 0.16 and
+ * 0.36. A row has its own tail along: b^4 of that.
+ *
  * Everything moves with b alone, and at b = 1, where the axis has no direction, all reads are one: nothing jumps from pixel to pixel.
  * (A lattice in the whole disk for wide lobes gains a tenth of FLIP there, but turns about where b is 1.)
  *
@@ -39,6 +43,7 @@
 #define OVERLAP 0.22f
 #define MOST    1.4f
 #define LEAST   0.7f
+#define WIDE    4
 /* Of a chosen number: where v ends at least and at most; and how far apart reads are that are `width` wide: twice that where they are narrow,
  * while round ones are few but not too few. */
 #define NEAR 1.8f
@@ -115,6 +120,14 @@ static inline float exponential(float v) {
     return power * e;
 }
 
+/* Of a lobe that is wide all around half of what is seen is mirrored below the horizon. Its middle is that of the rest: 0 where the mirror's
+ * mean is that of the mean micronormal, below an alpha of 0.3; 1 at an alpha of 1, where, of whatever view, it is the normal: half
+ * the angle from w, of which sqrt(1 - h) is the sine. */
+static inline float blunt(const mu_ibl_lobe_f *lobe) {
+    const float alpha = 1.41421356237309504880f * lobe->sigma[1];
+    return smaller(larger((alpha - 0.3f) / 0.7f, 0), 1);
+}
+
 /* `tailed`: a constant, so that GGX does not pay for it. */
 HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3], int tailed,
                 mu_ibl_read *out) {
@@ -125,7 +138,10 @@ HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe
     row laid;
     lay(plan, phase, e.major, b, share * b, &laid);
     const float width = laid.width;
-    float sine[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST];
+    float sine[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], wider[MU_IBL_READS_MOST];
+    /* 2, 6 ... from the middle, so that a row that grows keeps its wide ones */
+    const uint32_t from = (uint32_t)(phase % MU_IBL_PHASES + MU_IBL_READS_MOST - (laid.count - 1) / 2);
+    for (uint32_t j = 0; j < laid.padded; j++) wider[j] = (j + from) % WIDE == 2 ? 12 * square(b2) : 0;
     for (size_t j = 0; j < laid.padded; j++) {
         const float grown = exponential(laid.v[j]);
         sine[j] = 0.5f * (grown - 1 / grown);
@@ -134,14 +150,14 @@ HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe
     const float narrow = width / share, along = sqrt(larger(1 - narrow * narrow, 0)); /* what the width leaves */
     /* the middle of a chord up the disk is upper sqrt(1 - x²) high; its mean over what the row does not resolve across, by area: */
     const float mean = 8 / (3 * (float)PI), unresolved = square(e.turn[1]) + square(e.turn[0] * narrow);
-    const float upper = (1 - f.half) * (1 - (1 - mean) * unresolved);
+    const float low = (1 - f.half) * (1 - (1 - mean) * unresolved), upper = low + blunt(lobe) * (sqrt(1 - f.half) - low);
     const float radius = 0.5f * width * e.major * e.normal, seen = f.length * f.half;
     float x[3][MU_IBL_READS_MOST], rough[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
     for (size_t j = 0; j < laid.padded; j++) {
         const float slope = along * sine[j], moved = 1 + square((tailed ? tail[j] : 1) * slope);
         const float place = (tailed ? tail[j] : 1) * slope / sqrt(moved);
         const float p = e.turn[0] * place, free = larger(1 - p * p, 0);
-        const float q = upper * sqrt(free) + f.half * e.turn[1] * place;
+        const float tall = sqrt(free), q = smaller(upper * tall + f.half * e.turn[1] * place, tall);
         const float lift = sqrt(larger(free - q * q, 0));
         float m[3], n[3], r[3];
         for (int k = 0; k < 3; k++) m[k] = p * f.x[k] + q * f.y[k] + lift * f.w[k];
@@ -153,7 +169,8 @@ HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe
                             r[2] - f.mean[0] * r[0] - f.mean[1] * r[1]};
         const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
         weight[j] = laid.part[j] * seen * up / larger((1 + square(sine[j])) * (seen * up + wo[2] * hidden), REAL_MIN);
-        rough[j] = smaller(sqrt(radius * sqrt(inverse * (tailed ? tail[j] * tail[j] * (1 + slope * slope) / moved : 1))), 1);
+        const float alpha = radius * sqrt(inverse * (tailed ? tail[j] * tail[j] * (1 + slope * slope) / moved : 1));
+        rough[j] = smaller(sqrt(alpha + wider[j] * square(alpha) * sqrt(alpha)), 1);
     }
     float sums[4] = {0, 0, 0, 0}; /* one by one would wait for each other */
     for (size_t j = 0; j < laid.padded; j += 4)

@@ -12,9 +12,10 @@
 /* Density of the reflections from o that come back to i, for sigma of o. */
 static inline real folded_density(plan_kind plan, const closure *c, const real o[3], const real i[3],
                                   real sigma_o) {
-    const real h[3] = {o[0] + i[0], o[1] + i[1], o[2] - i[2]}; /* o + j */
-    if (!(h[2] > 0)) return 0;                                 /* no micronormal points down */
-    const real h2 = dot(h, h);
+    const real j[3] = {i[0], i[1], -i[2]};
+    real h[3] = {o[0] + j[0], o[1] + j[1], o[2] + j[2]}, h2 = dot(h, h);
+    if (h2 < R(0.25)) h2 = sharpen(o, j, h, h2);
+    if (!(h[2] > 0)) return 0; /* no micronormal points down */
     return smaller(transformed_density(plan, c, h, h2) / 4 * (c->map.view_z / larger(sigma_o, REAL_MIN)),
                    saturated);
 }

@@ -6,15 +6,6 @@
  * seen from the side of wo: i.z > 0.
  */
 
-/* h = wo + wi of unit vectors is normal to their difference. Rounding has left them a little too long or short, which
- * turns a short h, of grazing forward scattering; |wo - wi| is 2 there. Not in the paper. Returns |h|². */
-static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
-    const real apart[3] = {wo[0] - wi[0], wo[1] - wi[1], wo[2] - wi[2]};
-    const real off = dot(h, apart) / (4 - h2);
-    for (int k = 0; k < 3; k++) h[k] -= off * apart[k];
-    return dot(h, h);
-}
-
 /* The densities of the reflected direction by the surface's sampler: D / 4 and all that shadowing shares are at hand.
  * Returns the one that its normals alone would have. */
 static inline real reflection_pdf(plan_kind plan, const closure *c, mu_sampler sampler, real quarter_d,

@@ -59,6 +59,15 @@ static inline void fresnel_of(const closure *c, real cosine, real F[3]) {
     if (c->surface->fresnel.kind) MU(fresnel_eval)(&c->surface->fresnel, c->eta, smaller(cosine, 1), F);
 }
 
+/* h = wo + wi of unit vectors is normal to their difference. Rounding has left them a little too long or short, which
+ * turns a short h, of grazing forward scattering; |wo - wi| is 2 there. Not in the paper. Returns |h|². */
+static real sharpen(const real wo[3], const real wi[3], real h[3], real h2) {
+    const real apart[3] = {wo[0] - wi[0], wo[1] - wi[1], wo[2] - wi[2]};
+    const real off = dot(h, apart) / (4 - h2);
+    for (int k = 0; k < 3; k++) h[k] -= off * apart[k];
+    return dot(h, h);
+}
+
 #include "core/bsdf/bounded.h"
 #include "core/bsdf/folded.h"
 #include "core/bsdf/reflection.h"

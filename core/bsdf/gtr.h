@@ -4,7 +4,7 @@
  * gtr.h: what the files of GTR share. P22 = c/pi (1+x)^(gamma-2) (x+a)^(-gamma), x the squared slope, a =
  * alpha².
  *
- * For 0 < gamma < 2 it is a mixture of GGX of roughness² u in [a, 1]; Not in the paper. With L = -ln alpha, d
+ * For 0 < gamma < 2 it is a mixture of GGX of roughness² u in [a, 1] (not in the paper). With L = -ln alpha, d
  * = 1 - gamma and s in R:  u(s) = alpha (alpha + e^s) / (1 + alpha e^s), weight ~ e^(d s) / ((1 + e^(-s-L))
  * (1 + e^(s-L))).
  */

@@ -116,7 +116,7 @@ static inline void sample_of(plan_kind plan, const closure *c, mu_sampler sample
     fresnel_of(c, cosine, F);
     if (plan == PLAN_FULL && c->surface->transmission) {
         real choice = moved[2];
-        if (TRAITS & PICKS) { /* u[2] is spent: another number */
+        if (TRAITS & PICKS) { /* u[2] is spent: a number of another stream than sample_visible's, whichever */
             random_stream more = random_start(u);
             more.state ^= 0x5bf0363546a83dull;
             choice = random_next(&more);

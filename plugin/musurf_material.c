@@ -90,7 +90,7 @@ static void warn_of_tables(const musurf_host *host, const musurf_material *m) {
     if (!(m->unsure > 0) || !host || !COVERS(host, message) || !host->message) return;
     snprintf(text, sizeof text,
              "tables of compensation are off by up to %.2g of an albedo here, where %.2g is meant: "
-             "random_walk is exact",
+             "random_walk needs none",
              (double)m->unsure, m->parsed.definition.compensation_error);
     host->message(host->context, MUSURF_WARNING, MULTIPLE_SCATTERING, text);
 }

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """What has no independent value here, before the maps, tilts and directions of grid.py: only what must hold of any answer.
 
-Compensated scattering and random walks: f and pdf are finite and not negative. Flakes of a footprint: that, and their mean
+Compensated scattering and random walks: f and pdf are finite and not negative; a compensated f is the largest number of the
+format only where single scattering's is, since its lobe is smooth. Flakes of a footprint: that, and their mean
 over many footprints is the smooth f, exactly, by the definition of D K / E[K].
 """
 import math
@@ -63,6 +64,16 @@ def flakes(program, precision):
     return total, failures if measured >= 4 else [*failures, f"flakes: a mean of only {measured} of 8 surfaces is measured"]
 
 
+def saturated(program, pairs, precision):
+    """Failures: compensated (question, answer) with an f that is as large as the format goes, though single scattering's is not."""
+    large = measure.bound.FORMATS[precision][3]
+    pairs = [(question, answer) for question, answer in pairs if max(answer["f"]) > large]
+    single = measure.ask(program, [{**question, "material": {**question["material"], "multiple_scattering": "none"}}
+                                   for question, _ in pairs], precision)
+    return [f"{question['id']}: f = {answer['f']}, of single scattering {alone.get('f', alone)}"
+            for (question, answer), alone in zip(pairs, single, strict=True) if not max(alone.get("f", [0])) > large]
+
+
 def check(program, count, precision):
     """{kind: number of answers}, failures"""
     pairs = list(scattering(count))
@@ -74,5 +85,7 @@ def check(program, count, precision):
             continue
         numbers[kind] += 1
         failures += [f"{question['id']}: {problem}" for problem in measure.ranges(answer, precision)]
+    failures += saturated(program, [(question, answer) for (question, kind), answer in zip(pairs, answers, strict=True)
+                                    if kind == "compensated" and "error" not in answer], precision)
     numbers["flakes"], more_failures = flakes(program, precision)
     return numbers, failures + more_failures

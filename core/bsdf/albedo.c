@@ -13,6 +13,7 @@
 
 enum { WALKS = 2048 };                /* that tell where light leaves */
 static const double roundest = 0.999; /* B/A that u knows: ln 1 is 0 */
+static const float widely = 6;        /* ln(P/p) from which on S is a logarithm */
 static const double smallest = 1e-12; /* singular value of L, lest it leave float's range */
 
 int mu_albedo_bind(const albedo_source *s, const float w[3], closure *c) {
@@ -84,6 +85,9 @@ float mu_albedo_lay(const double v[4], mu_albedo_frame *f) {
                            .k = (float)(b / a),
                            .ratio = (float)fmin(ratio, roundest)};
     f->log = -logf(f->ratio);
+    f->steep = (float)fmax(large, 1),
+    f->smooth = (float)fmin(b / ((double)f->steep * (double)f->steep), 0.99),
+    f->span = logf(f->steep / f->smooth);
     return (float)large;
 }
 
@@ -120,9 +124,15 @@ static void lay(const closure *c, mu_albedo *t) {
     t->columns = level && isotropic ? 1 : ALBEDO_COLUMNS;
 }
 
+/* What light can do from a side that is denser, where facets face x alone: c of albedo.h; else 0. */
+static float fold_of(const albedo_source *source, const mu_albedo *t, float turn) {
+    const double index = source->definition->dielectric, eta = turn < 0 ? 1 / index : index;
+    return t->frame.ratio < 0.125f && eta < 1 ? (float)sqrt((1 - eta) * (1 + eta)) : 0;
+}
+
 /* n by which 8 steps of S say E best, at two azimuths. */
-static int best_roots(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side,
-                      double *error_of_it) {
+static void choose_s(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side,
+                     double *error_of_it) {
     enum { MOST = 4, STEPS = 16, AZIMUTHS = 2 };
     double least_error = INFINITY;
     int best = 0;
@@ -139,25 +149,23 @@ static int best_roots(const albedo_source *source, const mu_albedo *t, float tur
         }
         if (error < least_error) least_error = error, best = side->roots;
     }
-    *error_of_it = least_error;
-    return best;
+    side->roots = best, *error_of_it = least_error;
 }
 
-/* And sqrt(S) where the microsurface is not even, or if that halves what is off. */
+/* And sqrt(S) where the microsurface is not even, or if that halves what is off; of level glass whose slopes and angles are
+ * of very different scales the logarithm. */
 static void choose_roots(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side) {
     double plain, rooted;
+    side->worldly = source->surface->transmission && !source->trusting && t->quadrants == 1 &&
+                    t->columns > 1 && t->frame.span > widely;
+    side->fold = side->worldly ? fold_of(source, t, turn) : 0;
     side->rooted = t->quadrants > 1;
-    const int roots = best_roots(source, t, turn, side, &plain);
-    if (!side->rooted && !source->trusting) {
-        side->rooted = 1;
-        const int others = best_roots(source, t, turn, side, &rooted);
-        if (rooted < plain / 4) {
-            side->roots = others;
-            return;
-        }
-        side->rooted = 0;
-    }
-    side->roots = roots;
+    choose_s(source, t, turn, side, &plain);
+    if (side->rooted || source->trusting) return;
+    const int roots = side->roots;
+    side->rooted = 1;
+    choose_s(source, t, turn, side, &rooted);
+    if (!(rooted < plain / 4)) side->rooted = 0, side->roots = roots;
 }
 
 static size_t smallest_of(size_t a, size_t b) {
@@ -175,7 +183,8 @@ void mu_albedo_make(const albedo_source *source, mu_albedo *t, albedo_room *room
     for (int i = 0; i < sides; i++) {
         mu_albedo_side *const side = &t->side[i];
         if (source->like)
-            side->roots = source->like->side[i].roots, side->rooted = source->like->side[i].rooted;
+            side->roots = source->like->side[i].roots, side->rooted = source->like->side[i].rooted,
+            side->worldly = source->like->side[i].worldly, side->fold = source->like->side[i].fold;
         else
             choose_roots(source, t, i ? -1.0f : 1.0f, side);
         patch_maker m = {.source = source, .table = t, .side = side, .turn = i ? -1.0f : 1.0f};

@@ -13,6 +13,11 @@
  * it is. u is a logarithm between the azimuths of the world, Y/X about 1, and those of the microsurface before M, about A/B,
  * and linear beyond either: E may turn with both, and with any in between. Solid angle by
  *     du dS = 2^(1-n) (1 - S)^(1-2^n) (1 - B/A) r² / (ln(A/B) (X + Y) (X + Y B/A) (r + w.z)³) dw.
+ * What glass lets through depends on angles in the world, too, however smooth or steep its slopes are. Where E asks for it,
+ * S is a logarithm as u is, of tau = tan of the angle to the normal, linear below 1/P and beyond 1/p, P = max(A, 1), p = min(B, 1):
+ *     S = ln((1 + P tau) / (1 + p tau)) / ln(P/p),   du dS = (P - p) (1 + tau²)^1.5 / ((1 + P tau) (1 + p tau) ln(P/p) tau) du/dpsi dw,
+ * psi the azimuth. Where slopes along x are steep and those along y small, facets face x alone, and from the denser side total
+ * reflection begins where the cosine to that is c: E jumps there, beside a root, or a layer. Then u is folded to be 1/2 there, and beside that a root of what it was.
  * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and where tails are heavy (slopes
  * of no variance) E has a tip there, r^(2 gamma - 2) of std and gtr: sqrt(S) takes the place of S in interpolation; cells are drawn from uniformly in S nevertheless.
  * The square [0, 1]² is cut into patches, each of them into halves and they into others where E asks for it, and the last into cells:
@@ -32,7 +37,7 @@ enum {
     ALBEDO_ROWS = 4,
     ALBEDO_COLUMNS = 2,
     ALBEDO_ROOTS = 4 * ALBEDO_ROWS * ALBEDO_COLUMNS,
-    ALBEDO_HALVINGS = 10,
+    ALBEDO_HALVINGS = 16,
     ALBEDO_PATCH_FLOATS = 16 /* of values to a patch, or there is no room for it */
 };
 
@@ -51,6 +56,8 @@ typedef struct mu_albedo_side {
     float passes;  /* of light that is scattered on: the share that leaves on the other side */
     int roots;     /* n */
     int rooted;    /* sqrt(S) takes the place of S */
+    int worldly;   /* S is a logarithm of tau */
+    float fold;    /* c, where u is folded; else 0 */
     float unsure;  /* the most that a value was off where halving ended before it was near enough; else 0 */
 } mu_albedo_side;
 
@@ -81,6 +88,14 @@ static inline double albedo_s(const mu_albedo_side *side, double row) {
     return side->rooted ? row * row : row;
 }
 
+/* u at which a tau is folded: above 0, lest a half be empty. */
+static inline float albedo_fold(const mu_albedo *t, const mu_albedo_side *side, float tau) {
+    const float cosine2 = side->fold * side->fold * (1 + 1 / (tau * tau));
+    if (!(cosine2 < 1)) return 1e-6f;
+    const float y = sqrtf((1 - cosine2) / cosine2);
+    return fmaxf(log1pf((1 - t->frame.ratio) * y / (1 + t->frame.ratio * y)) / t->frame.log, 1e-6f);
+}
+
 /* The root patch. */
 static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side *side,
                                        const mu_albedo_frame *f, const float w[3]) {
@@ -94,15 +109,35 @@ static inline albedo_place albedo_root(const mu_albedo *t, const mu_albedo_side 
                                : (r > 0 ? r2 : 1 + t->frame.k * t->frame.k) / both / (t->frame.log * least) *
                                      (t->frame.k * f->det * (1 - flat)); /* det r2 alone may underflow */
     const int quadrant = t->quadrants == 1 ? 0 : (x < 0) + 2 * (y < 0);
-    const float still = w[2] * (n + r) / (n * n);      /* 1 - (r / n)² */
-    float rest = still, part = 1, s = r / n * (r / n); /* S: 1 - rest, next to the normal too */
-    for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2, s /= 1 + rest;
-    const float row = albedo_row(side, s) * ALBEDO_ROWS, column = u * (float)t->columns;
+    float up, rest, column = u, stretch, part = 1; /* up: S before roots, and rest what it leaves to 1 */
+    if (side->worldly) {
+        const float steep = t->frame.steep, smooth = t->frame.smooth, all = steep - smooth,
+                    tau = fmaxf(sqrtf(w[0] * w[0] + w[1] * w[1]), 1e-12f) / fmaxf(w[2], 1e-20f),
+                    above = 1 + steep * tau, below = 1 + smooth * tau, secant = sqrtf(1 + tau * tau);
+        up = fminf(log1pf(all * tau / below) / t->frame.span, 1);
+        rest = log1pf(all / (smooth * above)) / t->frame.span;
+        stretch = r > 0 ? (1 - flat) * (X * X + Y * Y) / (t->frame.log * both * least) : 1;
+        if (side->fold > 0) {
+            const float fold = albedo_fold(t, side, tau), width = u < fold ? fold : 1 - fold,
+                        beside = sqrtf(fmaxf(fabsf(u - fold) / width, 1e-12f));
+            column = u < fold ? (1 - beside) / 2 : (1 + beside) / 2;
+            stretch /= 4 * width * beside;
+        }
+        stretch *= all / (above * below * t->frame.span) * secant / tau * secant * secant;
+    } else {
+        rest = w[2] * (n + r) / (n * n), up = r / n * (r / n);
+        stretch = 2 * around / (n * n * n);
+    }
+    const float whole = rest;
+    for (int k = 0; k < side->roots; k++) rest = sqrtf(rest), part /= 2, up /= 1 + rest;
+    stretch *= part * (whole > 0 ? rest / whole : 1e30f);
+    const float row = albedo_row(side, up) * ALBEDO_ROWS;
+    column *= (float)t->columns;
     const int i = (int)fminf(row, ALBEDO_ROWS - 1), j = (int)fminf(column, (float)t->columns - 1);
     return (albedo_place){.patch = (quadrant * t->columns + j) * ALBEDO_ROWS + i,
                           .u = column - (float)j,
                           .s = row - (float)i,
-                          .stretch = 2 * part * (still > 0 ? rest / still : 1e30f) * around / (n * n * n),
+                          .stretch = stretch,
                           .row = i};
 }
 

@@ -17,16 +17,30 @@ static const double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.326
 
 void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const mu_albedo_frame *f,
                          int quadrant, float u, float s, float w[3]) {
-    float rest = fmaxf(1 - s, 0);
+    float rest = fmaxf(1 - s, 0), tau = 0;
     for (int k = 0; k < side->roots; k++) rest *= rest;
     const float root = side->roots ? sqrtf(1 - rest) : sqrtf(fminf(s, 1)),
                 r = root * (1 + root) / fmaxf(rest, 1e-7f);
     const int round = t->columns == 1;
+    if (side->worldly) {
+        rest = fmaxf(rest, 1e-7f);
+        tau = expm1f((1 - rest) * t->frame.span) / (t->frame.steep * -expm1f(-rest * t->frame.span));
+        if (side->fold > 0) {
+            const float fold = albedo_fold(t, side, fmaxf(tau, 1e-12f));
+            const float beside = 2 * u - 1;
+            u = fold + beside * fabsf(beside) * (u < 0.5f ? fold : 1 - fold);
+        }
+    }
     const float x = round ? cosf(u * (float)(PI / 2)) : -expm1f((u - 1) * t->frame.log) / t->frame.k,
-                y = round ? sinf(u * (float)(PI / 2)) : expm1f(u * t->frame.log), scale = r / hypotf(x, y);
+                y = round ? sinf(u * (float)(PI / 2)) : expm1f(u * t->frame.log),
+                scale = (side->worldly ? 1 : r) / hypotf(x, y);
     const float q[2] = {quadrant & 1 ? -scale * x : scale * x, quadrant & 2 ? -scale * y : scale * y};
     w[0] = f->from[0] * q[0] + f->from[1] * q[1];
     w[1] = f->from[2] * q[0] + f->from[3] * q[1];
+    if (side->worldly) {
+        const float flat = tau / hypotf(w[0], w[1]);
+        w[0] *= flat, w[1] *= flat;
+    }
     const float length = hypotf(hypotf(w[0], w[1]), 1);
     w[0] /= length, w[1] /= length, w[2] = 1 / length;
 }
@@ -49,6 +63,15 @@ static void integrate_panel(const mu_albedo *t, const mu_albedo_frame *f, const 
 static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
                       double u0, double u1, double s0, double s1, double sums[2]) {
     double high = s1;
+    if (side->worldly) { /* a logarithm: panels of 0.7 at most */
+        const int whole = 1 << side->roots;
+        const int parts =
+            (int)ceil((pow(1 - s0, whole) - pow(1 - s1, whole)) * (double)t->frame.span / 0.7 + 1e-9);
+        for (int k = 0; k < parts; k++)
+            integrate_panel(t, f, side, quadrant, u0, u1, s0 + (s1 - s0) * k / parts,
+                            s0 + (s1 - s0) * (k + 1) / parts, sums);
+        return;
+    }
     for (; s0 == 0 && high > 0.25 * (double)f->det; high /= 2)
         integrate_panel(t, f, side, quadrant, u0, u1, high / 2, high, sums);
     integrate_panel(t, f, side, quadrant, u0, u1, s0, high, sums);
@@ -58,7 +81,12 @@ static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_alb
 static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
                     double u0, double u1, double s0, double s1, double *cosines) {
     double sums[2] = {0, 0};
-    if (u0 > 0 || t->columns == 1) {
+    if (side->worldly) {
+        const int parts = (int)ceil((u1 - u0) * (double)t->frame.log / 0.7);
+        for (int k = 0; k < parts; k++)
+            integrate(t, f, side, quadrant, u0 + (u1 - u0) * k / parts, u0 + (u1 - u0) * (k + 1) / parts, s0,
+                      s1, sums);
+    } else if (u0 > 0 || t->columns == 1) {
         integrate(t, f, side, quadrant, u0, u1, s0, s1, sums);
     } else {
         double high = u1;

@@ -9,9 +9,9 @@
 #include "core/bsdf/albedo.h"
 
 /* Values that were evaluated already: each in one of so many places, by where it is. */
-enum { ALBEDO_KNOWN = 1 << 13 };
+enum { ALBEDO_KNOWN = 1 << 12 };
 typedef struct albedo_known {
-    uint32_t where; /* 0: none */
+    uint64_t where; /* 0: none */
     float value;
 } albedo_known;
 

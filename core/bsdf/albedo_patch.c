@@ -17,10 +17,11 @@
 
 #if MU_REAL_BITS == 24
 
-enum { LEAF = 2, FINEST = ALBEDO_HALVINGS + 1, KNOWN_BITS = 13 };
-_Static_assert(ALBEDO_KNOWN == 1 << KNOWN_BITS && 8ull * (4 << FINEST) * ((1 << FINEST) + 1) < 0xff000000u,
-               "values have places of their own");
+enum { LEAF = 2, FINEST = ALBEDO_HALVINGS + 1, KNOWN_BITS = 12 };
+_Static_assert(ALBEDO_KNOWN == 1 << KNOWN_BITS, "a place for each");
 static const float least = 1e-7f; /* what is lost at least: the lobe exists everywhere */
+static const double edge =
+    2e-3; /* how near a fold is asked, in columns, and in S: float tells sides by the square */
 
 /* A part of a root patch, along u and S: the at-th of 2^level, in 2^log cells. */
 typedef struct rect {
@@ -28,12 +29,23 @@ typedef struct rect {
     float left[2]; /* along either axis: what it is off, as far as is known */
 } rect;
 
+/* S from which on a fold leaves anything on its steeper side, tau = c / sqrt(1 - c²). */
+static double fold_begins(const patch_maker *m) {
+    const double c = (double)m->side->fold, tau = c / sqrt(1 - c * c), steep = (double)m->table->frame.steep,
+                 smooth = (double)m->table->frame.smooth;
+    const double rest = log1p((steep - smooth) / (smooth * (1 + steep * tau))) / (double)m->table->frame.span;
+    return 1 - pow(rest, 1.0 / (1 << m->side->roots));
+}
+
 float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
+    const mu_albedo_side *const side = m->side;
     float w[3];
     closure c;
-    mu_albedo_direction(m->table, m->side, &m->table->frame, m->quadrant,
-                        (float)((m->column + u) / m->table->columns),
-                        (float)albedo_s(m->side, (m->row + s) / ALBEDO_ROWS), w);
+    double at = albedo_s(side, (m->row + s) / ALBEDO_ROWS);
+    if (side->fold > 0) u = fmin(fmax(u, edge), 1 - edge); /* on its own side of the fold */
+    if (side->fold > 0 && m->column == 0) at = fmax(at, fold_begins(m) + edge / 10);
+    mu_albedo_direction(m->table, side, &m->table->frame, m->quadrant,
+                        (float)((m->column + u) / m->table->columns), (float)at, w);
     for (int k = 0; k < 3; k++) w[k] *= m->turn;
     if (!mu_albedo_bind(m->source, w, &c)) return 1;
     return fmaxf(mu_albedo_lost(m->source, &c), least);
@@ -42,11 +54,11 @@ float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
 /* The value at j, i of 2^log each of the root patch. */
 static float value_at(patch_maker *m, int j, int log_u, int i, int log_s) {
     const int round = m->table->columns == 1;
-    const uint32_t column = (uint32_t)(m->quadrant * m->table->columns + m->column),
-                   across = round ? 0 : (uint32_t)j << (FINEST - log_u),
-                   up = ((uint32_t)m->row << FINEST) + ((uint32_t)i << (FINEST - log_s)),
+    const uint64_t column = (uint64_t)(m->quadrant * m->table->columns + m->column),
+                   across = round ? 0 : (uint64_t)j << (FINEST - log_u),
+                   up = ((uint64_t)m->row << FINEST) + ((uint64_t)i << (FINEST - log_s)),
                    where = 1 + up + ((4 << FINEST) + 1) * (across + ((1 << FINEST) + 1) * column);
-    albedo_known *const k = &m->known[where * 2654435769u >> (32 - KNOWN_BITS)];
+    albedo_known *const k = &m->known[where * 0x9e3779b97f4a7c15u >> (64 - KNOWN_BITS)];
     if (k->where != where)
         *k = (albedo_known){where, mu_albedo_evaluate(m, (double)j / (1 << log_u), (double)i / (1 << log_s))};
     return k->value;
@@ -128,8 +140,9 @@ static int refine(patch_maker *m, rect *r, size_t facets) {
     const albedo_source *const source = m->source;
     const float wanted = (float)source->error / 2;
     const int isotropic = m->table->columns == 1;
-    /* a cell at least for each 1.5 of ln(A/B) that u is to a column */
-    const float cells = m->table->frame.log / (1.5f * (float)m->table->columns);
+    /* a cell at least for each 1.5 that u, or S, is a logarithm of, to a column or row */
+    const float cells[2] = {m->table->frame.log / (1.5f * (float)m->table->columns),
+                            m->side->worldly ? m->table->frame.span / (1.5f * ALBEDO_ROWS) : 0};
     float *const left = r->left;
     int done[2] = {isotropic, 0}, split = -1;
     /* of a root patch something has to be known: its first looks have no end */
@@ -137,7 +150,7 @@ static int refine(patch_maker *m, rect *r, size_t facets) {
     for (int axis = !isotropic; !done[0] || !done[1]; axis = isotropic ? 1 : !axis) {
         if (done[axis]) continue;
         const float before = left[axis];
-        const int few = axis == 0 && (float)(1 << (r->level[0] + r->log[0])) < cells;
+        const int few = (float)(1 << (r->level[axis] + r->log[axis])) < cells[axis];
         left[axis] = few ? 1 : look_between(m, r, axis, unknown[axis] ? SIZE_MAX : facets);
         done[axis] = 1, unknown[axis] = 0;
         /* of a look that has to end early, what the one before said is known, at most */

@@ -12,7 +12,14 @@
 /* log2 of the roughnesses between which blurring has tables. */
 static const float blurs_from = -7.5f, blurs_to = 4.2f;
 /* Floats that a table takes at most: alike in all azimuths, even along two axes, or tilted. */
-enum { FEW = 1 << 10, SOME = 1 << 14, MANY = 1 << 16, BLUR_CELLS = 4, BLUR_HALVINGS = 7 };
+enum {
+    FEW = 1 << 10,
+    SOME = 1 << 14,
+    MANY = 1 << 16,
+    BLUR_CELLS = 4,
+    BLUR_HALVINGS = 7,
+    UNEVEN_HALVINGS = 10
+};
 
 /* M = R(left) diag R(right), from which R(-left) takes what comes last, a turn of the world. For then float holds any M: an entry
  * of M^-1 is as large as its column, and not as another axis that lies between the world's. What is round keeps its M. */
@@ -37,12 +44,17 @@ static mu_definition reduced(const mu_definition *d) {
     return single;
 }
 
+/* Not surely: where it is not, tables are of all four quadrants. */
+static int is_level(const mu_definition *d) {
+    return d->tilt[0] == 0 && d->tilt[1] == 0 && d->ndf != MU_TABULATED && d->ndf != MU_CUSTOM;
+}
+
 /* Floats of a table; and of one that is blurred, on average. */
 static size_t floats_of_one(const mu_definition *d, int is_blurred) {
-    const int tilted = d->tilt[0] != 0 || d->tilt[1] != 0 || d->ndf == MU_TABULATED || d->ndf == MU_CUSTOM;
+    const int tilted = !is_level(d);
     const size_t side = (1u << BLUR_CELLS) + 1, sides = d->transmission ? 2 : 1;
     if (is_blurred) return (tilted ? 32u : 8u) * 2 * side * side * sides;
-    return (tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME) * sides;
+    return (tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME * sides) * sides;
 }
 static size_t floats(const mu_definition *d) {
     return floats_of_one(d, 0) + (d->compensation_blurs ? ALBEDO_BLURS * floats_of_one(d, 1) : 0);
@@ -191,7 +203,7 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     albedo_effort effort = {0, 0};
     albedo_source source = {.definition = &single,
                             .error = d->compensation_error,
-                            .halvings = ALBEDO_HALVINGS,
+                            .halvings = is_level(d) ? ALBEDO_HALVINGS : UNEVEN_HALVINGS,
                             .effort = &effort,
                             .facets = ALBEDO_FACETS /
                                       (size_t)(d->compensation_blurs || d->compensation_varies ? 4 : 1)};

@@ -240,9 +240,11 @@ int mu_transform_anisotropy(const double transform[4], double alpha, mu_anisotro
 int mu_metal(const char *symbol, double n[3], double k[3]);
 extern const char *const mu_metal_names[];
 
-/* L of albedo.h and its inverse, |det L|, b/a, B/A (but for what is round, at most), and -ln(B/A). */
+/* L of albedo.h and its inverse, |det L|, b/a, B/A (but for what is round, at most), and -ln(B/A); max(A, 1), min(B, 1), and ln
+ * of their quotient. */
 typedef struct mu_albedo_frame {
     float to[4], from[4], det, k, ratio, log;
+    float steep, smooth, span;
 } mu_albedo_frame;
 /* The tables that say what a closure of a compensated surface loses (albedo_set.h), in order to be mixed. */
 typedef struct mu_lobe {

@@ -94,6 +94,7 @@ class Messages(unittest.TestCase):
                            ('{"material": "musurf.microfacet", "alpha": [1, 2]}', "$.alpha: takes 1 number"),
                            ('{"material": "musurf.microfacet", "fresnel": {"schlik": 1}}', "$.fresnel.schlik: musurf.microfacet has no"),
                            ('{"material": "musurf.microfacet", "jacobian": {}}', "$.jacobian: is for musurf's own renderer"),
+                           ('{"material": "musurf.microfacet", "normal_map": {}}', "$.normal_map: is for musurf's own renderer"),
                            ('{"material": "musurf.microfacet", "alpha": {"texture": "a.png"}}', "as \"alpha\" beside \"file\""),
                            ('{"material": "musurf.microfacet", "transform": {"attribute": "m"}}', "as \"transform_0\", \"transform_1\","),
                            ('{"material": "musurf.microfacet", "ndf": "tabulated", "histogram": {"heightfield": "h.exr"}}',

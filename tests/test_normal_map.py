@@ -216,17 +216,17 @@ class Previews(Maps):
         sky = {c: 0.1 + (1 - y)**2 + 3 * np.exp(-((x - 0.3)**2 + (y - a)**2) / 0.003) for c, a in zip("RGB", (0.2, 0.3, 0.4))}
         self.texture("sky.exr", sky)
 
-    def seen(self, by, normal_map, samples=4, ndf="ggx", **item):
+    def seen(self, by, normal_map, samples=4, ndf="ggx", alpha=0.1, **item):
         def change(scene):
             scene["lights"] = [{"type": "environment", "image": "sky.exr"}]
             scene["integrator"] = {"samples": samples, "depth": 1, "by": by}
-        metal = self.metal(ndf=ndf, alpha=0.1)
+        metal = self.metal(ndf=ndf, alpha=alpha)
         return self.picture(metal | ({"normal_map": normal_map} if normal_map else {}), size=(40, 30), change=change, **(item or {"shape": "sphere"}))
 
     def test_all_take_it(self):
         self.texture("n.exr", encode(*waves(64)))
         near = {"file": "n.exr", "scale": [2, 1], "filter": "none"}
-        truth = self.seen("path", near, 200)
+        truth = self.seen("path", near, 100)
         distance = {}
         for by in ("split", "bent-normal", "major-axis", "lobe", "filtered"):
             distance[by] = flip(np.moveaxis(truth, 0, -1), np.moveaxis(self.seen(by, near), 0, -1))
@@ -234,13 +234,15 @@ class Previews(Maps):
         for by, d in distance.items():
             self.assertLess(d, 0.5 * without, distance)
         self.assertEqual(min(distance, key=distance.get), "lobe", distance)
+        mirror = self.seen("path", near, 32, alpha=0)  # which looks at points
+        self.assertLess(flip(np.moveaxis(mirror, 0, -1), np.moveaxis(self.seen("lobe", near | {"filter": "covariance"}, alpha=0), 0, -1)), 0.5 * without)
 
     def test_lobe_from_afar(self):
         """One sample of a plate, 100 texels a pixel: less than a third as far from the truth as one that looks at a point."""
         rng = np.random.default_rng(5)
         self.texture("n.exr", encode(*rng.normal(size=(2, 64, 64)) * 0.4))
         far, plate = {"file": "n.exr", "scale": [800, 800]}, {"shape": "rectangle", "transform": [{"scale": 20}], "ndf": "beckmann"}
-        truth = self.seen("path", far | {"filter": "none"}, 200, **plate)
+        truth = self.seen("path", far | {"filter": "none"}, 100, **plate)
         widened, turned = (np.square(self.seen("lobe", m, 1, **plate) - truth).mean() for m in (far, far | {"filter": "none"}))
         self.assertLess(math.sqrt(widened), math.sqrt(turned) / 3)
 

@@ -19,10 +19,11 @@ static const char *refusal(const mu_material *m, const musurf_slopes *slopes, co
 _Bool mu_lobe_source_make(mu_lobe_source *source, const mu_named_material *named, mu_error *error) {
     static const double still[4] = {1, 0, 0, 1};
     const mu_material *m = &named->material;
-    const _Bool varies = m->varying || m->tension || m->jacobian.map != MU_JACOBIAN_NONE ||
-                         (m->normal_map && m->normal_map->map);
     const musurf_slopes *slopes = m->type->extension ? m->type->extension(MUSURF_SLOPES_ID) : NULL;
     const musurf_map *map = m->type->extension ? m->type->extension(MUSURF_MAP_ID) : NULL;
+    /* what a normal map might widen takes its M at each hit, even a mirror, which none can */
+    const _Bool varies = m->varying || m->tension || m->jacobian.map != MU_JACOBIAN_NONE ||
+                         (m->normal_map && m->normal_map->placement.filtered && slopes && map);
     const char *why = refusal(m, slopes, map, varies);
     if (!why && slopes->moments(m->compiled, varies ? still : NULL, &source->moments) != MUSURF_OK)
         why = "has slopes that are not known";

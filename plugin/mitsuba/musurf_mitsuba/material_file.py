@@ -129,6 +129,8 @@ def values_of(table, document, path):
     """The values of the file's object by parameter name."""
     if "jacobian" in document:
         raise FileError(f"{path}: $.jacobian: is for musurf's own renderer; this host takes textures for the numbers of \"transform\"")
+    if "normal_map" in document:
+        raise FileError(f"{path}: $.normal_map: is for musurf's own renderer; this host has normal maps of its own")
     reader = Reader(table, path)
     for name, value in document.items():
         if name not in ("material", "$schema", "description"):

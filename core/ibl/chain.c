@@ -3,12 +3,13 @@
 /*
  * chain.c: how large the squares of a filtered environment (globe.h) are, and what each is worth.
  *
- * There are log2 of the sharpest one's side and half as many levels again: between two of the sharpest, whose texels are larger
- * than the lobe, reads interpolate worst. Each is as coarse as its lobe allows: a texel, (4 pi)^1/2 / side wide at the mean, is FINENESS
- * of its alpha at most, an eighth to a quarter of the lobe's width (2 alpha to either side), and there are 32 at least. What is small stays
- * in the processor's caches, where most of a read's time goes.
+ * There are twice log2 of the sharpest one's side levels: between two of the sharpest, whose alphas are far apart, reads interpolate
+ * worst. Each is as coarse as its lobe allows: a texel, (4 pi)^1/2 / side wide at the mean, is FINENESS of its alpha at most, an eighth to a
+ * quarter of the lobe's width (2 alpha to either side), and there are 32 at least. What is small stays in the processor's caches, where
+ * most of a read's time goes.
  *
- * A lobe of few texels needs few taps; of the others some are needed, or lamps that are a pixel small leave a pattern.
+ * A lobe of few texels needs few taps; of the others some are needed, or lamps that are a pixel small leave a pattern. Most of the time to make
+ * a chain goes into the first two or three.
  */
 #include "core/ibl/globe.h"
 
@@ -22,7 +23,7 @@ size_t mu_ibl_chain_sides(size_t side, size_t sides[MU_IBL_LEVELS_MOST]) {
     const double whole = sqrt(4 * PI);
     size_t exponent = 0;
     while (side >> (exponent + 1)) exponent++;
-    const size_t levels = exponent * 3 / 2 + 1;
+    const size_t levels = (2 * exponent < MU_IBL_LEVELS_MOST ? 2 * exponent : MU_IBL_LEVELS_MOST - 1) + 1;
     for (size_t l = 0; l < levels; l++) {
         const double linear = (double)l / (double)(levels - 1);
         sides[l] = l ? MU_IBL_CHAIN_LEAST : side;
@@ -32,7 +33,7 @@ size_t mu_ibl_chain_sides(size_t side, size_t sides[MU_IBL_LEVELS_MOST]) {
 }
 
 size_t mu_ibl_chain_taps(size_t level) {
-    return level == 1 ? 96 : level == 2 ? 192 : MU_IBL_CHAIN_TAPS;
+    return level == 1 ? 32 : level < 4 ? 256 : MU_IBL_CHAIN_TAPS;
 }
 
 #endif

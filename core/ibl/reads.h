@@ -47,7 +47,7 @@ enum { MU_IBL_PHASES = 16 };
 /* How many reads are chosen at most, where their number is. */
 enum { MU_IBL_READS_CHOSEN = 33 };
 /* How many of MU_IBL_LOBE where nobody says: they take a frame less time than the usual 16 along the axis, measured (`make ibl`). */
-enum { MU_IBL_READS_OF_LOBE = 8 };
+enum { MU_IBL_READS_OF_LOBE = 6 };
 
 /* Where the reads of MU_IBL_FILTERED stand, for any lobe (importance.c). */
 typedef struct mu_ibl_grid {

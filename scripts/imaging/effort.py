@@ -19,7 +19,7 @@ class Effort:
     beta: tuple
 
 
-FULL = Effort(("courtyard", "forest", "interior", "sunrise"), 64, (), (-0.8, 0, 0.8, 0.95), 256, 4, 2, (1, 2, 4, 8, 10, 12, 16, 32, 64), (("teapot", 192, 120), ("plate", 128, 128)),
+FULL = Effort(("courtyard", "forest", "interior", "sunrise"), 64, (), (-0.8, 0, 0.8, 0.95), 256, 4, 2, (1, 2, 4, 6, 8, 10, 12, 16, 32, 64), (("teapot", 192, 120), ("plate", 128, 128)),
               (0.25, 0.5, 1, 1.5, 2, 3), (0.5, 1, 1.5, 2.3, 3.5, 5))
 QUICK = Effort(("interior",), 32, (0.2, 0.8), (-0.8, 0.8), 48, 4, 3, (1, 4, 8, 12, 16, 64), (), (0.5, 1, 2), (1, 2.3, 5))
 FILTERED = 25  # reads of filtered importance sampling in Figure 21

@@ -152,11 +152,12 @@ static void choose_s(const albedo_source *source, const mu_albedo *t, float turn
     side->roots = best, *error_of_it = least_error;
 }
 
-/* And sqrt(S) where the microsurface is not even, or if that halves what is off; of level glass whose slopes and angles are
+/* And sqrt(S) where the microsurface is not even, or if that halves what is off; of glass without tilt whose slopes and angles are
  * of very different scales the logarithm. */
 static void choose_roots(const albedo_source *source, const mu_albedo *t, float turn, mu_albedo_side *side) {
     double plain, rooted;
-    side->worldly = source->surface->transmission && !source->trusting && t->quadrants == 1 &&
+    const double *const tilt = source->definition->tilt;
+    side->worldly = source->surface->transmission && !source->trusting && tilt[0] == 0 && tilt[1] == 0 &&
                     t->columns > 1 && t->frame.span > widely;
     side->fold = side->worldly ? fold_of(source, t, turn) : 0;
     side->rooted = t->quadrants > 1;

@@ -171,8 +171,8 @@ class Explain(unittest.TestCase):
     def test_tables_are_built_only_for_what_is_drawn(self):
         self.make_sky()
         self.assertEqual(self.explain({})["lights"], {"filtered_bytes": 0, "table_bytes": 0, "image_bytes": 0})
-        # a constant light's squares, the least there are: 8 of 32 x 32 texels of 4 floats, each within a border
-        self.assertEqual(self.explain(NEEDS["filtered_light"])["lights"]["filtered_bytes"], 8 * 34 * 34 * 4 * 4)
+        # a constant light's squares, the least there are: 2 log2 32 + 1 of 32 x 32 texels of 4 floats, each within a border
+        self.assertEqual(self.explain(NEEDS["filtered_light"])["lights"]["filtered_bytes"], 11 * 34 * 34 * 4 * 4)
         sky = self.explain(NEEDS["environment"])["lights"]
         self.assertEqual(sky["image_bytes"], 16 * 8 * 3 * 4)
         self.assertGreater(sky["table_bytes"], 16 * 8 * 4)

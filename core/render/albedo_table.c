@@ -249,7 +249,7 @@ static _Bool is_drawn(const work *w) {
 _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
                            uint32_t threads, mu_error *error) {
-    *t = (mu_albedo_table){.heights = 64, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
+    *t = (mu_albedo_table){.heights = 96, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
     work w = {.table = t, .material = material, .map = map, .still = still, .lobe = low};
     w.slopes = material->type->extension ? material->type->extension(MUSURF_SLOPES_ID) : NULL;
     if (map && low->sigma[1] > 0) { /* else there is no M that makes it of a mirror: the identity stands for all */

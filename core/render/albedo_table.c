@@ -25,7 +25,7 @@
 #define SIGMA_STEP 0.25f
 enum { SIGMAS_MOST = 16 };
 /* What a node may be off; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
-#define ENOUGH 2e-4
+#define ENOUGH 1e-4
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11, PIECES = 1 << 12 };
 /* The view of the node on the horizon. */
 #define LEAST_COSINE 1e-6f

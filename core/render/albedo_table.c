@@ -24,7 +24,7 @@
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.25f
 enum { SIGMAS_MOST = 16 };
-/* What a node may be off; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
+/* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
 #define ENOUGH 1e-4
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11, PIECES = 1 << 12 };
 /* The view of the node on the horizon. */
@@ -41,7 +41,8 @@ typedef struct work {
     const musurf_moments *still;
     double root[3]; /* of the moments before M: lower triangle; 0: a mirror, which no M makes rough */
     const mu_ibl_lobe_f *lobe;
-    size_t most; /* calls of a node */
+    double enough; /* that a node may be off */
+    size_t most;   /* calls of a node */
     _Bool drawn; /* samples do better than directions */
 } work;
 
@@ -170,7 +171,7 @@ static void fill(void *context, uint32_t row) {
     float *rgb = t->rgb + (size_t)3 * row * t->heights;
     seat s;
     const _Bool made = seat_make(w, first, second, &s);
-    mu_even_effort effort = {ENOUGH, w->most, 0};
+    mu_even_effort effort = {w->enough, w->most, 0};
     if (w->drawn) s.source.lobe = NULL;
     for (uint32_t i = 0; i < t->heights; i++, rgb += 3) {
         float v[3];
@@ -236,7 +237,7 @@ static _Bool is_even(const work *w) {
 /* Is f noise, as a random walk's, so that samples are to be asked? Seen from a place like any other. */
 static _Bool is_drawn(const work *w) {
     seat s;
-    mu_even_effort effort = {ENOUGH, LEAST_CALLS * 4, 0};
+    mu_even_effort effort = {w->enough, LEAST_CALLS * 4, 0};
     float v[3];
     double wo[3];
     if (!seat_make(w, 0, 0, &s)) return 0;
@@ -258,6 +259,7 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
         place_sigmas(t, low, high);
     }
     const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
+    w.enough = varies ? 2 * ENOUGH : ENOUGH;
     w.drawn = is_drawn(&w);
     if (varies) t->heights = 32;
     if (map || material->plan.needs & MUSURF_NEEDS_TANGENT) {

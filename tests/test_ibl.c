@@ -238,6 +238,34 @@ static void test_batch(void **state) {
         }
 }
 
+/* Views of one lobe several at a time: the same arithmetic, for samples, number by number. */
+static void test_axes(void **state) {
+    (void)state;
+    uniform u = {36};
+    mu_ibl_axes_d many;
+    int cut = 0;
+    for (int run = 0; run < 200; run++) {
+        mu_ibl_settings_d s = mu_ibl_settings_default_d();
+        const mu_ibl_lobe_d lobe = any_question(&u).lobe;
+        double wo[3][MU_IBL_AXES];
+        s.shift = run % 2 ? MU_IBL_PRINTED : MU_IBL_SYMMETRIC;
+        for (int i = 0; i < MU_IBL_AXES; i++) {
+            const question q = any_question(&u);
+            for (int k = 0; k < 3; k++) wo[k][i] = q.wo[k];
+        }
+        mu_ibl_axes_make_d(&lobe, wo, &s, &many);
+        for (int i = 0; i < MU_IBL_AXES; i++) {
+            mu_ibl_axis_d one;
+            mu_ibl_axis_make_for_samples_d(&lobe, (const double[3]){wo[0][i], wo[1][i], wo[2][i]}, &s, &one);
+            cut += one.delta != 0;
+            assert_true(many.radius[i] == one.radius);
+            for (int k = 0; k < 2; k++)
+                assert_true(many.along[k][i] == one.along[k] && many.middle[k][i] == one.middle[k] && many.reach[k][i] == one.reach[k]);
+        }
+    }
+    assert_true(cut > 100 && cut < 200 * MU_IBL_AXES - 100); /* both kinds were among them */
+}
+
 static void test_level(void **state) {
     (void)state;
     assert_true(mu_ibl_level_d(0, 9) == 0 && mu_ibl_level_d(0.25, 9) == 4 && mu_ibl_level_d(1, 9) == 8);
@@ -253,6 +281,7 @@ int main(void) {
         cmocka_unit_test(test_above_the_horizon),
         cmocka_unit_test(test_float),
         cmocka_unit_test(test_batch),
+        cmocka_unit_test(test_axes),
         cmocka_unit_test(test_level),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

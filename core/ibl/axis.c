@@ -12,6 +12,8 @@
 #include "core/ibl/ibl.h"
 #include "core/ibl/width.h"
 
+#include <string.h>
+
 typedef MU(mu_ibl_lobe) lobe;
 typedef MU(mu_ibl_settings) settings;
 typedef MU(mu_ibl_axis) axis;
@@ -30,7 +32,7 @@ static void turn_back(const lobe *l, real x, real y, real out[2]) {
 
 /* The micronormals of a slope of the lobe's frame and of its opposite, and half the way from one to the other. */
 static void both_normals(const lobe *l, real x, real y, real out[2][3]) {
-    const real length = length2(R(1), length2(x, y));
+    const real length = length3(x, y, 1);
     turn_back(l, -x / length, -y / length, out[0]);
     out[1][0] = -out[0][0], out[1][1] = -out[0][1];
     out[0][2] = out[1][2] = 1 / length;
@@ -42,63 +44,139 @@ static real shift_of(mu_ibl_shift shift, const clamped *c, real apart) {
     return (shift == MU_IBL_SYMMETRIC ? c->skew : first > 0 ? first : second - 1) * apart;
 }
 
-/* Appendix D, and what Eq. (9) needs: where the outermost samples are, from the middle of the ends' angles. */
-static void place_samples(const real cut[2], axis *out) {
-    const real first = atan(cut[0]), second = atan(cut[1]), middle = (first + second) / 2,
-               half = (first - second) / 2;
-    out->middle[0] = sin(middle), out->middle[1] = cos(middle);
+/* Appendix D, and what Eq. (9) needs: where the outermost samples are, from the middle of the ends' angles. The ends' directions are
+ * (lean, rise): their middle is along the sum or across the difference, whichever is longer, and these are twice the cosine and
+ * the sine of half the angle between. */
+static inline void place_samples(const real lean[2], const real rise[2], axis *out) {
+    const real sum[2] = {lean[0] + lean[1], rise[0] + rise[1]},
+               apart[2] = {lean[0] - lean[1], rise[1] - rise[0]};
+    const real twice[2] = {length2(sum[0], sum[1]), length2(apart[0], apart[1])};
+    const _Bool near = twice[0] > twice[1];
+    const real length = near ? twice[0] : twice[1];
+    out->middle[0] = (near ? sum[0] : apart[1]) / length;
+    out->middle[1] = (near ? sum[1] : apart[0]) / length;
     /* (1 - zeta) middle + zeta end; 0 at zeta = 1 and ends that are opposite */
-    out->reach[0] = larger(1 - out->zeta * (1 - cos(half)), REAL_EPSILON);
-    out->reach[1] = out->zeta * sin(half);
+    out->reach[0] = larger(1 - out->zeta * (1 - twice[0] / 2), REAL_EPSILON);
+    out->reach[1] = out->zeta * (twice[1] / 2);
 }
 
-/* `whole`: with the points and their parameters. */
-static inline void make(const lobe *l, const real wo[3], const settings *s, int whole, axis *out) {
-    const real r[2] = {smaller(s->k * l->sigma[0], STEEPEST), smaller(s->k * l->sigma[1], STEEPEST)};
-    const real o[3] = {l->turn[0] * wo[0] + l->turn[1] * wo[1], l->turn[0] * wo[1] - l->turn[1] * wo[0],
-                       larger(wo[2], 0)};
+/* An axis while it is made: before Appendix C moves the closest points, which takes angles. The rest is arithmetic, which goes well
+ * for several at a time. */
+typedef struct begun {
     extremum nearest, farthest;
-    extrema_of(r, o, &nearest, &farthest);
-    const real x = r[0] * farthest.cosine, y = r[1] * farthest.sine, steep = length2(x, y);
-    if (whole) {
-        both_normals(l, r[0] * nearest.cosine, r[1] * nearest.sine, out->near);
-        both_normals(l, x, y, out->far);
-    }
+    clamped c;
+    real r[2], o[3], forward, moved[2]; /* moved: sine and cosine of delta */
+} begun;
 
+HOT void begin(const lobe *l, const real wo[3], real k, begun *b, axis *out) {
+    b->r[0] = smaller(k * l->sigma[0], STEEPEST), b->r[1] = smaller(k * l->sigma[1], STEEPEST);
+    b->o[0] = l->turn[0] * wo[0] + l->turn[1] * wo[1], b->o[1] = l->turn[0] * wo[1] - l->turn[1] * wo[0];
+    b->o[2] = larger(wo[2], 0);
+    extrema_of(b->r, b->o, &b->nearest, &b->farthest);
+    const real x = b->r[0] * b->farthest.cosine, y = b->r[1] * b->farthest.sine, steep = length2(x, y);
     /* the axis' plane: the first end's side, to which the micronormal leans against its slope */
-    const real side[2] = {steep > 0 ? -x / steep : -farthest.cosine, steep > 0 ? -y / steep : -farthest.sine};
+    const real side[2] = {steep > 0 ? -x / steep : -b->farthest.cosine,
+                          steep > 0 ? -y / steep : -b->farthest.sine};
     turn_back(l, side[0], side[1], out->along);
-    const real forward = steep > 0 ? -farthest.p / steep : side[0] * o[0] + side[1] * o[1];
-    const clamped c = clamp_axis(forward, o[2], steep);
+    b->forward = steep > 0 ? -b->farthest.p / steep : side[0] * b->o[0] + side[1] * b->o[1];
+    b->c = clamp_axis(b->forward, b->o[2], steep);
+    b->moved[0] = 0, b->moved[1] = 1;
+}
+
+/* By an angle from t[1] to t[0]. */
+static inline void shift(mu_ibl_shift by, real apart, begun *b, axis *out) {
+    out->delta = shift_of(by, &b->c, apart);
+    b->moved[0] = sin(out->delta), b->moved[1] = cos(out->delta);
+}
+
+/* The same where t is not wanted. Where nothing is cut, delta is 0 whatever the angle. */
+static inline void shift_for_samples(mu_ibl_shift by, begun *b, axis *out) {
+    const extremum *near = &b->nearest, *far = &b->farthest;
+    out->delta = 0;
+    if (b->c.skew != 0)
+        shift(by,
+              atan2(near->sine * far->cosine - near->cosine * far->sine,
+                    near->cosine * far->cosine + near->sine * far->sine),
+              b, out);
+}
+
+HOT void finish(const settings *s, const begun *b, axis *out) {
     real lean[2], rise[2];
     for (int end = 0; end < 2; end++) {
-        const real length = length2(R(1), c.cut[end]);
-        out->tau[end] = c.tau[end], lean[end] = c.cut[end] / length, rise[end] = 1 / length;
+        const real length = length2(R(1), b->c.cut[end]);
+        out->tau[end] = b->c.tau[end], lean[end] = b->c.cut[end] / length, rise[end] = 1 / length;
         for (int i = 0; i < 2; i++) out->far_clamped[end][i] = out->along[i] * lean[end];
         out->far_clamped[end][2] = rise[end];
     }
-
-    out->delta = 0;
-    if (whole || c.skew != 0) {
-        out->t[0] = atan2(nearest.sine, nearest.cosine);
-        out->t[1] = atan2(farthest.sine, farthest.cosine);
-        out->delta = shift_of(s->shift, &c, out->t[0] - out->t[1]);
-    }
-    out->width = shifted_width(r, o, &nearest, out->delta);
+    out->width = shifted_width(b->r, b->o, &b->nearest, b->moved[0], b->moved[1]);
     /* both reflect within a plane that holds but a part of the view: twice that times the sine of the angle between */
-    out->length = 2 * length2(forward, o[2]) * (lean[0] * rise[1] - rise[0] * lean[1]);
+    out->length = 2 * length2(b->forward, b->o[2]) * (lean[0] * rise[1] - rise[0] * lean[1]);
     out->zeta = out->length > 0 ? larger(1 - out->width / out->length, -STEEPEST) : 0;
     out->radius = smaller(larger(out->width / (2 * s->k), s->beta / (2 * (real)s->samples) * out->length),
                           STEEPEST); /* Eq. (10) */
-    place_samples(c.cut, out);
+    place_samples(lean, rise, out);
 }
 
 void MU(mu_ibl_axis_make)(const lobe *l, const real wo[3], const settings *s, axis *out) {
-    make(l, wo, s, 1, out);
+    begun b;
+    begin(l, wo, s->k, &b, out);
+    both_normals(l, b.r[0] * b.nearest.cosine, b.r[1] * b.nearest.sine, out->near);
+    both_normals(l, b.r[0] * b.farthest.cosine, b.r[1] * b.farthest.sine, out->far);
+    out->t[0] = atan2(b.nearest.sine, b.nearest.cosine);
+    out->t[1] = atan2(b.farthest.sine, b.farthest.cosine);
+    shift(s->shift, out->t[0] - out->t[1], &b, out);
+    finish(s, &b, out);
 }
 
 void MU(mu_ibl_axis_make_for_samples)(const lobe *l, const real wo[3], const settings *s, axis *out) {
-    make(l, wo, s, 0, out);
+    begun b;
+    begin(l, wo, s->k, &b, out);
+    shift_for_samples(s->shift, &b, out);
+    finish(s, &b, out);
+}
+
+/* Several of them, number by number: number k of i is in [k][i]. */
+enum { BEGUN = sizeof(begun) / sizeof(real) };
+HOT void put(const begun *b, size_t i, real (*out)[MU_IBL_AXES]) {
+    real each[BEGUN];
+    memcpy(each, b, sizeof *b);
+    for (size_t k = 0; k < BEGUN; k++) out[k][i] = each[k];
+}
+HOT void take(const real (*from)[MU_IBL_AXES], size_t i, begun *b) {
+    real each[BEGUN];
+    for (size_t k = 0; k < BEGUN; k++) each[k] = from[k][i];
+    memcpy(b, each, sizeof *b);
+}
+
+/* Loops that compilers take several rounds of at a time: over what is local, without calls or branches, a number of times that is known
+ * to them. */
+void MU(mu_ibl_axes_make)(const lobe *l, const real (*wo)[MU_IBL_AXES], const settings *s,
+                          MU(mu_ibl_axes) * out) {
+    real several[BEGUN][MU_IBL_AXES];
+    const settings own = *s;
+    const lobe of = *l;
+    MU(mu_ibl_axes) made;
+    axis a;
+    begun b;
+    for (size_t i = 0; i < MU_IBL_AXES; i++) {
+        const real o[3] = {wo[0][i], wo[1][i], wo[2][i]};
+        begin(&of, o, own.k, &b, &a);
+        put(&b, i, several);
+        for (int k = 0; k < 2; k++) made.along[k][i] = a.along[k];
+    }
+    for (size_t i = 0; i < MU_IBL_AXES; i++) {
+        take(several, i, &b);
+        if (b.c.skew == 0) continue;
+        shift_for_samples(own.shift, &b, &a);
+        put(&b, i, several);
+    }
+    for (size_t i = 0; i < MU_IBL_AXES; i++) {
+        take(several, i, &b);
+        finish(&own, &b, &a);
+        for (int k = 0; k < 2; k++) made.middle[k][i] = a.middle[k], made.reach[k][i] = a.reach[k];
+        made.radius[i] = a.radius;
+    }
+    *out = made;
 }
 
 void MU(mu_ibl_axis_batch)(size_t count, const lobe *lobes, size_t lobe_stride, const real *wo,

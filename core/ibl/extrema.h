@@ -49,18 +49,17 @@ static inline void extrema_of(const real r[2], const real o[3], extremum *neares
     real root_c = sqrt(fabs(apart) / hx / hy) * sqrt((r[0] / hx + r[1] / hx) / hy) * o[2];
     const real largest = larger(larger(fabs(a), fabs(b)), root_c);
     if (largest > 0) a /= largest, b /= largest, root_c /= largest;
-    const real c = copysign(root_c * root_c, apart), difference = (a - b) * (a + b) + c, product = 2 * a * b;
+    const real c = apart < 0 ? -(root_c * root_c) : root_c * root_c, difference = (a - b) * (a + b) + c,
+               product = 2 * a * b;
     const real s = length2(difference, product), u = a * a + b * b;
-    if (s == 0) { /* Appendix A: t0 = pi/2, t1 = t0 + pi/2 */
-        *farthest = extremum_at(1, 0, a * largest, hx, hy);
-        *nearest = extremum_at(0, 1, b * largest, hx, hy);
-    } else if (difference >= 0) {
-        *farthest = extremum_at(difference + s, product, a * (s + (u + c)) * largest, hx, hy);
-        *nearest = extremum_at(-product, difference + s, b * small_root(s, u, c, a) * largest, hx, hy);
-    } else {
-        *farthest = extremum_at(product, s - difference, b * (s + (u - c)) * largest, hx, hy);
-        *nearest = extremum_at(difference - s, product, -a * small_root(s, u, -c, b) * largest, hx, hy);
-    }
+    /* the form to take, without branches: several views go at a time. s = 0: Appendix A, t0 = pi/2, t1 = t0 + pi/2 */
+    const _Bool first = difference >= 0, none = s == 0;
+    const real A = first ? a : b, B = first ? b : a, C = first ? c : -c,
+               sum = none ? 1 : fabs(difference) + s;
+    const real far = A * (none ? 1 : s + (u + C)) * largest,
+               near = B * (none ? 1 : small_root(s, u, C, A)) * largest;
+    *farthest = extremum_at(first ? sum : product, first ? product : sum, far, hx, hy);
+    *nearest = extremum_at(first ? -product : -sum, first ? sum : product, first ? near : -near, hx, hy);
 }
 
 #endif

@@ -47,6 +47,9 @@ mu_ibl_slopes mu_ibl_slopes_mix(size_t count, const mu_ibl_slopes *parts, const 
  * both ends are cut; or by what the two ends lose in sum, which is the same where one end is cut alone. */
 typedef enum mu_ibl_shift { MU_IBL_SYMMETRIC, MU_IBL_PRINTED } mu_ibl_shift;
 
+/* Views at a time of mu_ibl_axes_make: what is alike is worked out for several at once. */
+enum { MU_IBL_AXES = 16 };
+
 #define MU_REAL       float
 #define MU_SUFFIX(id) id##_f
 #include "core/ibl/ibl_real.h"

@@ -55,6 +55,12 @@ void MU_SUFFIX(mu_ibl_axis_make)(const MU_SUFFIX(mu_ibl_lobe) * lobe, const MU_R
 void MU_SUFFIX(mu_ibl_axis_make_for_samples)(const MU_SUFFIX(mu_ibl_lobe) * lobe, const MU_REAL wo[3],
                                              const MU_SUFFIX(mu_ibl_settings) * settings,
                                              MU_SUFFIX(mu_ibl_axis) * out);
+/* The same of MU_IBL_AXES views of one lobe, number by number: several are worked out at a time. */
+typedef struct MU_SUFFIX(mu_ibl_axes) {
+    MU_REAL along[2][MU_IBL_AXES], middle[2][MU_IBL_AXES], reach[2][MU_IBL_AXES], radius[MU_IBL_AXES];
+} MU_SUFFIX(mu_ibl_axes);
+void MU_SUFFIX(mu_ibl_axes_make)(const MU_SUFFIX(mu_ibl_lobe) * lobe, const MU_REAL (*wo)[MU_IBL_AXES],
+                                 const MU_SUFFIX(mu_ibl_settings) * settings, MU_SUFFIX(mu_ibl_axes) * out);
 /* Many at once. Strides count lobes and numbers; a stride of 0 repeats the one. */
 void MU_SUFFIX(mu_ibl_axis_batch)(size_t count, const MU_SUFFIX(mu_ibl_lobe) * lobes, size_t lobe_stride,
                                   const MU_REAL *wo, size_t wo_stride,

@@ -14,4 +14,12 @@ static inline real length2(real x, real y) {
 #endif
 }
 
+static inline real length3(real x, real y, real z) {
+#if MU_REAL_BITS == 24
+    return (real)sqrt((double)x * (double)x + (double)y * (double)y + (double)z * (double)z);
+#else
+    return hypot(hypot(x, y), z);
+#endif
+}
+
 #endif

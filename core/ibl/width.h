@@ -15,15 +15,13 @@
 
 #include "core/ibl/extrema.h"
 
-static inline real shifted_width(const real r[2], const real o[3], const extremum *t, real delta) {
-    const real s = sin(delta), c = cos(delta);
+static inline real shifted_width(const real r[2], const real o[3], const extremum *t, real s, real c) {
     const real g[2] = {-s * (r[0] * t->sine), s * (r[1] * t->cosine)};
     const real d[2] = {c * (r[0] * t->cosine), c * (r[1] * t->sine)};
-    const real m = length2(R(1), length2(g[0] + d[0], g[1] + d[1])),
-               n = length2(R(1), length2(g[0] - d[0], g[1] - d[1]));
+    const real m = length3(g[0] + d[0], g[1] + d[1], 1), n = length3(g[0] - d[0], g[1] - d[1], 1);
     const real up = (g[1] / m) * (d[0] / n) - (g[0] / m) * (d[1] / n);
     const real x = d[0] / m / n * o[2] - up * o[1], y = d[1] / m / n * o[2] + up * o[0];
-    return 4 * length2(length2(x, y), c * t->p / m / n);
+    return 4 * length3(x, y, c * t->p / m / n);
 }
 
 #endif

@@ -4,6 +4,7 @@
  * test_reads.c: what every technique of image-based lighting promises of its reads, whatever lobe and view it is given; and that
  * filtered importance sampling integrates the lobe.
  */
+#include "core/ibl/globe.h"
 #include "core/ibl/reads.h"
 
 #include "tests/bsdf_fixture.h"
@@ -57,6 +58,63 @@ static void test_any_lobe_and_view(void **state) {
         }
 }
 
+/* Of several views of a lobe at a time: the very same. */
+static void test_of_views(void **state) {
+    uniform u = {51};
+    (void)state;
+    for (size_t t = 0; t < sizeof techniques / sizeof *techniques; t++)
+        for (size_t views = 1; views <= MU_IBL_AXES; views += 5) {
+            const mu_ibl_plan plan = plan_of(techniques[t], 1 + views);
+            const mu_ibl_lobe_f lobe = {.sigma = {2 * uniform_float(&u), 0.1f * uniform_float(&u)}, .turn = {0.6f, 0.8f}};
+            static mu_ibl_view many[MU_IBL_AXES];
+            float wo[3][MU_IBL_AXES];
+            for (size_t i = 0; i < MU_IBL_AXES; i++) {
+                const float z = 0.01f + 0.99f * uniform_float(&u), phi = 6.28f * uniform_float(&u), r = sqrtf(1 - z * z);
+                wo[0][i] = r * cosf(phi), wo[1][i] = r * sinf(phi), wo[2][i] = z;
+            }
+            mu_ibl_reads_of_views(&plan, &lobe, views, wo, many);
+            for (size_t i = 0; i < views; i++) {
+                mu_ibl_read one[MU_IBL_READS_MOST];
+                assert_int_equal(many[i].count, mu_ibl_reads(&plan, &lobe, (const float[3]){wo[0][i], wo[1][i], wo[2][i]}, one));
+                for (size_t j = 0; j < many[i].count; j++) {
+                    assert_true(many[i].x[j] == one[j].direction[0] && many[i].y[j] == one[j].direction[1]);
+                    assert_true(many[i].z[j] == one[j].direction[2]);
+                    assert_true(many[i].roughness[j] == one[j].roughness && many[i].weight[j] == one[j].weight);
+                }
+            }
+        }
+}
+
+/* Sums of reads, of one level or of several, against one read after the other. All terms are positive, texels 0.5 to 1: a sum of 64 reads of
+ * two levels, weights of 5 roundings each, is right to 128 + 8 roundings, and so is the other: 272 * 2^-24 of it. Texels are random:
+ * a wrong one would be seen at once. */
+static void test_sums(void **state) {
+    enum { LEVELS = 5 };
+    static const size_t sides[LEVELS] = {64, 32, 32, 32, 16};
+    static float memory[4 * (66 * 66 + 3 * 34 * 34 + 18 * 18)];
+    uniform u = {52};
+    mu_ibl_globe globe;
+    (void)state;
+    assert_int_equal(mu_ibl_globe_floats(LEVELS, sides), sizeof memory / sizeof *memory);
+    mu_ibl_globe_lay(&globe, LEVELS, sides, memory);
+    for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) memory[i] = 0.5f + uniform_float(&u) / 2;
+    for (int run = 0; run < 400; run++) {
+        mu_ibl_batch batch = {.count = 1 + (size_t)run % MU_IBL_BATCH};
+        float level = run % 3 ? (float)(LEVELS - 1) * uniform_float(&u) : (float)(run % LEVELS), sum[4] = {0.25f, 0, 0, 0}, one[4] = {0.25f, 0, 0, 0};
+        for (size_t i = 0; i < batch.count; i++) {
+            const float z = 2 * uniform_float(&u) - 1, phi = 6.28f * uniform_float(&u), r = sqrtf(1 - z * z);
+            if (run % 2) level = (float)(LEVELS - 1) * uniform_float(&u);
+            batch.x[i] = r * cosf(phi), batch.y[i] = r * sinf(phi), batch.z[i] = z;
+            batch.level[i] = level, batch.weight[i] = 0.1f + uniform_float(&u);
+            mu_ibl_globe_add(&globe, (const float[3]){batch.x[i], batch.y[i], z}, level, batch.weight[i], one);
+        }
+        mu_ibl_globe_sum(&globe, &batch, sum);
+        for (int k = 0; k < 4; k++)
+            if (!(fabs((double)sum[k] / (double)one[k] - 1) < 272 * 0x1p-24))
+                fail_msg("%zu reads, level %g: %g, one by one %g", batch.count, (double)level, (double)sum[k], (double)one[k]);
+    }
+}
+
 /* Mean squares of the distance from the mirrored view along and across it, of 64 reads, against a million midpoints of the integral of f cos
  * (density.c). A read stands in the middle of an eighth of the radial mass: of the outermost, whose mean square is about a third of
  * all, that is off by the half at most, and no other by more; together a third. A lobe of other roughness is so by its square. */
@@ -98,6 +156,7 @@ static void test_filtered_integrates(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_any_lobe_and_view), cmocka_unit_test(test_filtered_integrates)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_any_lobe_and_view), cmocka_unit_test(test_of_views), cmocka_unit_test(test_sums),
+                                       cmocka_unit_test(test_filtered_integrates)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

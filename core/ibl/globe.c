@@ -88,7 +88,8 @@ static inline void bilinear(const mu_ibl_square *s, float u, float v, float weig
 /* Places in the square, 0 to 1. */
 static inline void fold(float wx, float wy, float wz, float *u, float *v) {
     const float scale = 0.5f / (fabs(wx) + fabs(wy) + fabs(wz)), x = wx * scale, y = wy * scale;
-    const float fx = copysign(0.5f - fabs(y), x), fy = copysign(0.5f - fabs(x), y);
+    const float across = 0.5f - fabs(y), down = 0.5f - fabs(x);
+    const float fx = x >= 0 ? across : -across, fy = y >= 0 ? down : -down; /* copysign would go one by one */
     *u = 0.5f + (wz >= 0 ? x : fx);
     *v = 0.5f + (wz >= 0 ? y : fy);
 }
@@ -143,7 +144,8 @@ static inline void sum_spots(size_t count, const spots *restrict s, float *restr
     for (size_t i = 0; i < count; i++) {
         const float *restrict a = s->texel[i], *restrict b = a + s->row[i];
         for (int k = 0; k < 4; k++)
-            sum[k] += (s->w[0][i] * a[k] + s->w[1][i] * a[4 + k]) + (s->w[2][i] * b[k] + s->w[3][i] * b[4 + k]);
+            sum[k] +=
+                (s->w[0][i] * a[k] + s->w[1][i] * a[4 + k]) + (s->w[2][i] * b[k] + s->w[3][i] * b[4 + k]);
     }
 }
 
@@ -165,11 +167,66 @@ static void sum_several(const mu_ibl_globe *g, const mu_ibl_batch *b, const floa
     if (farther > 0) sum_spots(b->count, &s[1], sum);
 }
 
+/* The same of one square for all, which is found sooner. Squares of the same side have the same. */
+typedef struct places {
+    int at[MU_IBL_BATCH];
+    float w[4][MU_IBL_BATCH];
+} places;
+
+static inline void find_places(size_t count, float side, const float *restrict u, const float *restrict v,
+                               const float *restrict weight, places *restrict p) {
+    const int whole = 4 * ((int)side + 2);
+    for (size_t i = 0; i < count; i++) {
+        const float x = u[i] * side + 0.5f, y = v[i] * side + 0.5f;
+        const int column = (int)x, row = (int)y;
+        const float right = x - (float)column, down = y - (float)row, lower = weight[i] * down,
+                    upper = weight[i] - lower;
+        p->at[i] = row * whole + 4 * column;
+        p->w[1][i] = upper * right, p->w[0][i] = upper - p->w[1][i];
+        p->w[3][i] = lower * right, p->w[2][i] = lower - p->w[3][i];
+    }
+}
+
+static inline void sum_places(size_t count, const mu_ibl_square *square, const places *restrict p,
+                              float share, float *restrict sum) {
+    const size_t row = 4 * (square->side + 2);
+    float all[4] = {0, 0, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        const float *restrict a = square->texels + p->at[i], *restrict b = a + row;
+        for (int k = 0; k < 4; k++)
+            all[k] +=
+                (p->w[0][i] * a[k] + p->w[1][i] * a[4 + k]) + (p->w[2][i] * b[k] + p->w[3][i] * b[4 + k]);
+    }
+    for (int k = 0; k < 4; k++) sum[k] += share * all[k];
+}
+
+/* All of one level. */
+static void sum_alike(const mu_ibl_globe *g, const mu_ibl_batch *b, const float *u, const float *v,
+                      float sum[4]) {
+    const int low = (int)b->level[0];
+    const float share = b->level[0] - (float)low;
+    const mu_ibl_square *const near = &g->level[low], *const far = near + (low + 1 < (int)g->levels);
+    places p;
+    find_places(b->count, (float)near->side, u, v, b->weight, &p);
+    sum_places(b->count, near, &p, 1 - share, sum);
+    if (!(share > 0)) return;
+    if (far->side != near->side) find_places(b->count, (float)far->side, u, v, b->weight, &p);
+    sum_places(b->count, far, &p, share, sum);
+}
+
+static inline int alike(const mu_ibl_batch *b) {
+    int others = 0;
+    for (size_t i = 0; i < b->count; i++) others |= b->level[i] != b->level[0];
+    return !others;
+}
+
 void mu_ibl_globe_sum(const mu_ibl_globe *g, const mu_ibl_batch *b, float rgb[4]) {
     float u[MU_IBL_BATCH], v[MU_IBL_BATCH], sum[4] = {rgb[0], rgb[1], rgb[2], rgb[3]};
     for (size_t i = 0; i < b->count; i++) fold(b->x[i], b->y[i], b->z[i], &u[i], &v[i]);
     if (b->count < SEVERAL)
         for (size_t i = 0; i < b->count; i++) trilinear(g, u[i], v[i], b->level[i], b->weight[i], sum);
+    else if (alike(b))
+        sum_alike(g, b, u, v, sum);
     else
         sum_several(g, b, u, v, sum);
     for (int k = 0; k < 4; k++) rgb[k] = sum[k];

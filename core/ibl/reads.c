@@ -43,25 +43,26 @@ static size_t bent_normal(const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_r
 }
 
 /* mu_ibl_axis_sample and a mirror, many at once: all micronormals lie in the plane of z and `along`. */
-static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_ibl_settings_f *settings,
-                         mu_ibl_read *out) {
-    mu_ibl_axis_f axis;
-    mu_ibl_axis_make_for_samples_f(lobe, wo, settings, &axis);
-    const size_t n = settings->samples;
-    const float forward = axis.along[0] * wo[0] + axis.along[1] * wo[1];
-    const float p = axis.reach[0], last = n > 1 ? axis.reach[1] : 0, step = n > 1 ? 2 * last / (float)(n - 1) : 0;
-    float lean[MU_IBL_READS_MOST], rise[MU_IBL_READS_MOST]; /* each times twice the cosine to wo */
+static inline void along_axis(size_t n, const float wo[3], const float along[2], const float middle[2], const float reach[2],
+                              float *restrict x, float *restrict y, float *restrict z) {
+    const float forward = along[0] * wo[0] + along[1] * wo[1];
+    const float p = reach[0], last = n > 1 ? reach[1] : 0, step = n > 1 ? 2 * last / (float)(n - 1) : 0;
     for (size_t j = 0; j < n; j++) {
         const float q = last - (float)(int)j * step, inverse = 1 / sqrt(p * p + q * q);
-        const float x = (p * axis.middle[0] + q * axis.middle[1]) * inverse,
-                    z = (p * axis.middle[1] - q * axis.middle[0]) * inverse, twice = 2 * (x * forward + z * wo[2]);
-        lean[j] = twice * x, rise[j] = twice * z;
+        const float lean = (p * middle[0] + q * middle[1]) * inverse, rise = (p * middle[1] - q * middle[0]) * inverse,
+                    twice = 2 * (lean * forward + rise * wo[2]);
+        x[j] = twice * lean * along[0] - wo[0], y[j] = twice * lean * along[1] - wo[1], z[j] = twice * rise - wo[2];
     }
-    const float roughness = smaller(sqrt(axis.radius), 1), weight = 1 / (float)n;
-    for (size_t j = 0; j < n; j++)
-        out[j] = (mu_ibl_read){{lean[j] * axis.along[0] - wo[0], lean[j] * axis.along[1] - wo[1], rise[j] - wo[2]},
-                               roughness,
-                               weight};
+}
+
+static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_ibl_settings_f *settings, mu_ibl_read *out) {
+    mu_ibl_axis_f a;
+    float x[MU_IBL_READS_MOST], y[MU_IBL_READS_MOST], z[MU_IBL_READS_MOST];
+    const size_t n = settings->samples;
+    mu_ibl_axis_make_for_samples_f(lobe, wo, settings, &a);
+    along_axis(n, wo, a.along, a.middle, a.reach, x, y, z);
+    const float roughness = smaller(sqrt(a.radius), 1), weight = 1 / (float)n;
+    for (size_t j = 0; j < n; j++) out[j] = (mu_ibl_read){{x[j], y[j], z[j]}, roughness, weight};
     return n;
 }
 
@@ -83,6 +84,37 @@ size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl
 
 size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out) {
     return mu_ibl_reads_of_phase(plan, 0, lobe, wo, out);
+}
+
+static void major_axes(const mu_ibl_lobe_f *lobe, size_t views, const float (*wo)[MU_IBL_AXES], const mu_ibl_settings_f *settings,
+                       mu_ibl_view *out) {
+    mu_ibl_axes_f a;
+    const size_t n = settings->samples;
+    mu_ibl_axes_make_f(lobe, wo, settings, &a);
+    for (size_t i = 0; i < views; i++) {
+        const float o[3] = {wo[0][i], wo[1][i], wo[2][i]}, along[2] = {a.along[0][i], a.along[1][i]},
+                    middle[2] = {a.middle[0][i], a.middle[1][i]}, reach[2] = {a.reach[0][i], a.reach[1][i]};
+        along_axis(n, o, along, middle, reach, out[i].x, out[i].y, out[i].z);
+        const float roughness = smaller(sqrt(a.radius[i]), 1), weight = 1 / (float)n;
+        for (size_t j = 0; j < n; j++) out[i].roughness[j] = roughness, out[i].weight[j] = weight;
+        out[i].count = n;
+    }
+}
+
+void mu_ibl_reads_of_views(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, size_t views, const float (*wo)[MU_IBL_AXES],
+                           mu_ibl_view *out) {
+    if (plan->technique == MU_IBL_MAJOR_AXIS) {
+        major_axes(lobe, views, wo, &plan->settings, out);
+        return;
+    }
+    for (size_t i = 0; i < views; i++) {
+        mu_ibl_read each[MU_IBL_READS_MOST];
+        out[i].count = mu_ibl_reads(plan, lobe, (const float[3]){wo[0][i], wo[1][i], wo[2][i]}, each);
+        for (size_t j = 0; j < out[i].count; j++) {
+            out[i].x[j] = each[j].direction[0], out[i].y[j] = each[j].direction[1], out[i].z[j] = each[j].direction[2];
+            out[i].roughness[j] = each[j].roughness, out[i].weight[j] = each[j].weight;
+        }
+    }
 }
 
 #endif

@@ -75,6 +75,14 @@ void mu_ibl_plan_phases(mu_ibl_plan *plan, size_t samples);
 
 /* How many there are, at most MU_IBL_READS_MOST: 1, settings.samples, or what was chosen. wo.z > 0. */
 size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out);
+/* The reads of a view, number by number; of up to MU_IBL_AXES views of one lobe at a time, all of `wo` being set to some. */
+typedef struct mu_ibl_view {
+    size_t count;
+    float x[MU_IBL_READS_MOST], y[MU_IBL_READS_MOST], z[MU_IBL_READS_MOST]; /* direction */
+    float roughness[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
+} mu_ibl_view;
+void mu_ibl_reads_of_views(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, size_t views, const float (*wo)[MU_IBL_AXES],
+                           mu_ibl_view *out);
 /* Of any number: those of sample `phase` of a pixel. */
 size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                              mu_ibl_read *out);

@@ -59,35 +59,58 @@ void page_albedo_make(page_albedo *t, const page_material *m, int samples) {
     memcpy(t->rgb[QUARTER + 2], t->rgb[QUARTER], sizeof t->rgb[0]);
 }
 
+static inline float least_of(float a, float b) {
+    return a < b ? a : b;
+}
+static inline float most_of(float a, float b) {
+    return a > b ? a : b;
+}
+
 /* The angle of x, y >= 0 over a quarter turn. */
-static float quarters(float x, float y) {
-    const float least = fminf(x, y), most = fmaxf(x, y), r = most > 0 ? least / most : 0;
+static inline float quarters(float x, float y) {
+    const float least = least_of(x, y), most = most_of(x, y), r = least / most_of(most, 1e-30f);
     const float r2 = r * r; /* of atan r, to 1e-5 (Hastings 1955) */
     const float angle = r * (0.9998660f + r2 * (-0.3302995f + r2 * (0.1801410f + r2 * (-0.0851330f + r2 * 0.0208351f)))) * 0.63661977f;
     return y > x ? 1 - angle : angle;
 }
 
+/* Where views are among nodes: the first of four by four, and the weights of each; worked out for several at a time. */
+typedef struct places {
+    int row[MU_IBL_AXES], node[MU_IBL_AXES];
+    float of_row[4][MU_IBL_AXES], of_node[4][MU_IBL_AXES];
+} places;
+
 /* Weights of nodes at -1, 0, 1, 2. */
-static void four(float x, float weight[4]) {
+static inline void four(float x, size_t i, float (*weight)[MU_IBL_AXES]) {
     const float a = x + 1, b = x - 1, c = x - 2;
-    weight[0] = -x * b * c / 6, weight[1] = a * b * c / 2, weight[2] = -a * x * c / 2, weight[3] = a * x * b / 6;
+    weight[0][i] = -x * b * c / 6, weight[1][i] = a * b * c / 2, weight[2][i] = -a * x * c / 2, weight[3][i] = a * x * b / 6;
 }
 
-void page_albedo_at(const page_albedo *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[4]) {
-    const float x = fabsf(lobe->turn[0] * wo[0] + lobe->turn[1] * wo[1]),
-                y = fabsf(lobe->turn[0] * wo[1] - lobe->turn[1] * wo[0]);
-    const float h = fmaxf(wo[2], 0) / (1 + sqrtf(x * x + y * y));
-    const float up = sqrtf(h * (1 + t->scale) / (h + t->scale)) * LAST,
-                around = quarters(t->widen[0] * x, t->widen[1] * y) * QUARTER;
-    const int i = up < 1 ? 0 : up < LAST - 2 ? (int)up - 1 : LAST - 3, a = around < QUARTER - 1 ? (int)around : QUARTER - 1;
-    float of_row[4], of_node[4], sum[4] = {0, 0, 0, 0};
-    four(up - (float)(i + 1), of_node);
-    four(around - (float)a, of_row);
-    for (int r = 0; r < 4; r++) {
-        float row[4] = {0, 0, 0, 0};
-        for (int n = 0; n < 4; n++)
-            for (int k = 0; k < 4; k++) row[k] += of_node[n] * t->rgb[a + r][i + n][k];
-        for (int k = 0; k < 4; k++) sum[k] += of_row[r] * row[k];
+static inline void find(const page_albedo *t, const mu_ibl_lobe_f *lobe, const float (*restrict wo)[MU_IBL_AXES], places *restrict p) {
+    const float cosine = lobe->turn[0], sine = lobe->turn[1], scale = t->scale, wide = t->widen[0], high = t->widen[1];
+    for (size_t i = 0; i < MU_IBL_AXES; i++) {
+        const float x = fabsf(cosine * wo[0][i] + sine * wo[1][i]), y = fabsf(cosine * wo[1][i] - sine * wo[0][i]);
+        const float h = most_of(wo[2][i], 0) / (1 + sqrtf(x * x + y * y));
+        const float up = sqrtf(h * (1 + scale) / (h + scale)) * LAST, around = quarters(wide * x, high * y) * QUARTER;
+        const int node = (int)least_of(most_of(up - 1, 0), LAST - 3), row = (int)least_of(around, QUARTER - 1);
+        p->node[i] = node, p->row[i] = row;
+        four(up - (float)(node + 1), i, p->of_node);
+        four(around - (float)row, i, p->of_row);
     }
-    memcpy(rgb, sum, sizeof sum);
+}
+
+void page_albedo_at(const page_albedo *t, const mu_ibl_lobe_f *lobe, const float (*wo)[MU_IBL_AXES], float (*rgb)[4]) {
+    places p;
+    find(t, lobe, wo, &p);
+    for (size_t i = 0; i < MU_IBL_AXES; i++) {
+        float sum[4] = {0, 0, 0, 0};
+        for (int r = 0; r < 4; r++) {
+            const float(*const node)[4] = &t->rgb[p.row[i] + r][p.node[i]];
+            float row[4] = {0, 0, 0, 0};
+            for (int n = 0; n < 4; n++)
+                for (int k = 0; k < 4; k++) row[k] += p.of_node[n][i] * node[n][k];
+            for (int k = 0; k < 4; k++) sum[k] += p.of_row[r][i] * row[k];
+        }
+        memcpy(rgb[i], sum, sizeof sum);
+    }
 }

@@ -21,6 +21,7 @@ typedef struct page_albedo {
 
 /* By up to `samples` directions of light each. */
 void page_albedo_make(page_albedo *table, const page_material *material, int samples);
-void page_albedo_at(const page_albedo *table, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[4]);
+/* Of several views. */
+void page_albedo_at(const page_albedo *table, const mu_ibl_lobe_f *lobe, const float (*wo)[MU_IBL_AXES], float (*rgb)[4]);
 
 #endif

@@ -45,7 +45,7 @@ typedef struct spot {
 const char *page_technique_name(int technique) {
     static const char *const names[] = {
         MU_IBL_FOR_TECHNIQUES(TITLE) /* those of core/ibl come first */
-        [SAMPLED] = "sampled",
+            [SAMPLED] = "sampled",
         [LAMP] = "lamp",
         [LAMP + 1] = NULL,
     };
@@ -102,35 +102,37 @@ static inline void spots_at(float x, float y, spot both[2]) {
         {-x, -front, -y}, {cosine, -sine, 0}, {-y * sine, -y * cosine, flat}, {sine, y * cosine, front}};
 }
 
-/* Directions in the frame of `p`, times `turned` along the surface: +1, or -1 for the opposite spot. */
-static void look(const page_sphere *s, const spot *p, size_t count, const mu_ibl_read *reads, float turned,
+/* Reads in the frame of `p`, times `turned` along the surface: +1, or -1 for the opposite spot. */
+static void look(const page_sphere *s, const spot *p, const mu_ibl_view *reads, float turned,
                  const float albedo[4], float rgb[4]) {
     mu_ibl_batch batch;
     float x[3], y[3], z[3]; /* the frame's axes there */
     const float last = (float)(s->around->globe.levels - 1);
-    batch.count = count;
+    const size_t count = batch.count = reads->count;
     turn_back(s, p->t, x), turn_back(s, p->b, y), turn_back(s, p->n, z);
-    for (size_t k = 0; k < count; k++) {
-        const float dx = turned * reads[k].direction[0], dy = turned * reads[k].direction[1],
-                    dz = reads[k].direction[2];
-        batch.x[k] = dx * x[0] + dy * y[0] + dz * z[0];
-        batch.y[k] = dx * x[1] + dy * y[1] + dz * z[1];
-        batch.z[k] = dx * x[2] + dy * y[2] + dz * z[2];
-        batch.level[k] = reads[k].roughness * last, batch.weight[k] = reads[k].weight;
+    for (int k = 0; k < 3; k++) x[k] *= turned, y[k] *= turned;
+    for (size_t i = 0; i < count; i++) {
+        const float dx = reads->x[i], dy = reads->y[i], dz = reads->z[i];
+        batch.x[i] = dx * x[0] + dy * y[0] + dz * z[0];
+        batch.y[i] = dx * x[1] + dy * y[1] + dz * z[1];
+        batch.z[i] = dx * x[2] + dy * y[2] + dz * z[2];
+        batch.level[i] = reads->roughness[i] * last, batch.weight[i] = reads->weight[i];
     }
     mu_ibl_globe_sum(&s->around->globe, &batch, rgb);
     for (int k = 0; k < 4; k++) rgb[k] *= albedo[k];
 }
 
-/* Two opposite spots: seen in their frames the view is turned by half about the normal, and so are, of a lobe that
+/* Pairs of opposite spots: seen in their frames the view is turned by half about the normal, and so are, of a lobe that
  * half a turn leaves as it is, the reads. */
-static void by_reads(const page_sphere *s, const spot *p, const spot *opposite, float rgb[2][4]) {
-    mu_ibl_read reads[MU_IBL_READS_MOST];
-    float albedo[4];
-    const size_t count = mu_ibl_reads(&s->plan, &s->material->lobe, p->wo, reads);
-    page_albedo_at(&s->albedo, &s->material->lobe, p->wo, albedo);
-    look(s, p, count, reads, 1, albedo, rgb[0]);
-    look(s, opposite, count, reads, -1, albedo, rgb[1]);
+static void by_reads(const page_sphere *s, size_t pairs, spot (*both)[2], float (*rgb)[2][4]) {
+    mu_ibl_view reads[MU_IBL_AXES];
+    float wo[3][MU_IBL_AXES], albedo[MU_IBL_AXES][4];
+    for (size_t i = 0; i < MU_IBL_AXES; i++)
+        for (int k = 0; k < 3; k++) wo[k][i] = both[i < pairs ? i : 0][0].wo[k];
+    mu_ibl_reads_of_views(&s->plan, &s->material->lobe, pairs, wo, reads);
+    page_albedo_at(&s->albedo, &s->material->lobe, wo, albedo);
+    for (size_t i = 0; i < pairs; i++)
+        for (int k = 0; k < 2; k++) look(s, &both[i][k], &reads[i], k ? -1 : 1, albedo[i], rgb[i][k]);
 }
 
 static void by_lamp(const page_sphere *s, const spot *p, float rgb[4]) {
@@ -170,43 +172,82 @@ static void by_sampling(const page_sphere *s, const spot *p, uint32_t pixel, uin
     for (int k = 0; k < 3; k++) rgb[k] *= sample.weight[k];
 }
 
-static void shade(const page_sphere *s, const spot *both, const uint32_t pixel[2], int pass, int sampled,
-                  float rgb[2][4]) {
+/* Pixels of a row that are worked out together, and their opposites. */
+typedef struct span {
+    size_t count;
+    int column[MU_IBL_AXES];
+    float cover[MU_IBL_AXES]; /* of the pixel by the sphere */
+    spot both[MU_IBL_AXES][2];
+    float front[MU_IBL_AXES][2][4];
+} span;
+
+static void shade(const page_sphere *s, int row, int pass, int sampled, span *p) {
     if (s->technique < SAMPLED || (s->technique == SAMPLED && !sampled)) {
-        by_reads(s, &both[0], &both[1], rgb);
+        by_reads(s, p->count, p->both, p->front);
         return;
     }
-    for (int i = 0; i < 2; i++)
-        if (s->technique == LAMP)
-            by_lamp(s, &both[i], rgb[i]);
-        else
-            by_sampling(s, &both[i], pixel[i], (uint32_t)pass, rgb[i]);
+    for (size_t i = 0; i < p->count; i++) {
+        const int pixel[2] = {row * s->size + p->column[i], (s->size - row) * s->size - 1 - p->column[i]};
+        for (int k = 0; k < 2; k++)
+            if (s->technique == LAMP)
+                by_lamp(s, &p->both[i][k], p->front[i][k]);
+            else
+                by_sampling(s, &p->both[i][k], (uint32_t)pixel[k], (uint32_t)pass, p->front[i][k]);
+    }
+}
+
+/* `last`: the last pixel of both rows. */
+static void put_bytes(const page_sphere *s, const span *p, int last, uint32_t *rgba) {
+    int place[MU_IBL_AXES][2][4];
+    page_tone_places(s->exposure, sizeof place / sizeof(int), p->front[0][0], place[0][0]);
+    for (size_t i = 0; i < p->count; i++) {
+        rgba[p->column[i]] = page_tone_bytes(&s->tone, place[i][0], p->cover[i]);
+        rgba[last - p->column[i]] = page_tone_bytes(&s->tone, place[i][1], p->cover[i]);
+    }
+}
+
+static void put_linear(const span *p, int last, float *linear) {
+    for (size_t i = 0; i < p->count; i++) {
+        memcpy(linear + 3 * p->column[i], p->front[i][0], 3 * sizeof(float));
+        memcpy(linear + 3 * (last - p->column[i]), p->front[i][1], 3 * sizeof(float));
+    }
+}
+
+static void add_up(span *p, int last, int pass, float *sums) {
+    for (size_t i = 0; i < p->count; i++)
+        for (int side = 0; side < 2; side++) {
+            float *const sum = sums + 3 * (side ? last - p->column[i] : p->column[i]), *const radiance =
+                                                                                           p->front[i][side];
+            for (int k = 0; k < 3; k++) radiance[k] = (sum[k] += radiance[k]) / (float)(pass + 1);
+        }
 }
 
 void page_sphere_rows(const page_sphere *s, int row, int pass, float *sums, float *linear, uint32_t *rgba) {
     const float half = (float)s->size / 2, y = (half - ((float)row + 0.5f)) / half;
-    for (int column = 0; column < s->size; column++) {
-        const float x = (((float)column + 0.5f) - half) / half,
-                    inside = half * (RADIUS - sqrtf(x * x + y * y));
-        const float cover = fminf(fmaxf(inside + 0.5f, 0), 1); /* of the pixel by the sphere */
-        float front[2][4] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
-        const int place[2] = {column, 2 * s->size - 1 - column}; /* in both rows */
-        if (cover > 0) {
-            spot both[2];
-            spots_at(x / RADIUS, y / RADIUS, both);
-            const uint32_t pixel[2] = {(uint32_t)(row * s->size + column),
-                                       (uint32_t)((s->size - row) * s->size - 1 - column)};
-            shade(s, both, pixel, pass, sums != NULL, front);
-        }
-        for (int i = 0; i < 2; i++) {
-            if (s->technique == SAMPLED && sums)
-                for (int k = 0; k < 3; k++)
-                    front[i][k] = (sums[3 * place[i] + k] += front[i][k]) / (float)(pass + 1);
+    const int last = 2 * s->size - 1; /* of both rows */
+    for (int column = 0; column < s->size;) {
+        span p = {.count = 0};
+        for (; column < s->size && p.count < MU_IBL_AXES; column++) {
+            const float x = (((float)column + 0.5f) - half) / half,
+                        inside = half * (RADIUS - sqrtf(x * x + y * y));
+            if (inside > -0.5f) {
+                p.column[p.count] = column, p.cover[p.count] = inside < 0.5f ? inside + 0.5f : 1;
+                spots_at(x / RADIUS, y / RADIUS, p.both[p.count++]);
+                continue;
+            }
             if (linear)
-                memcpy(linear + 3 * place[i], front[i], 3 * sizeof(float));
+                memset(linear + 3 * column, 0, 3 * sizeof(float)),
+                    memset(linear + 3 * (last - column), 0, 3 * sizeof(float));
             else
-                rgba[place[i]] = page_tone_of(&s->tone, s->exposure, front[i], cover);
+                rgba[column] = rgba[last - column] = 0;
         }
+        if (!p.count) continue;
+        shade(s, row, pass, sums != NULL, &p);
+        if (s->technique == SAMPLED && sums) add_up(&p, last, pass, sums);
+        if (linear)
+            put_linear(&p, last, linear);
+        else
+            put_bytes(s, &p, last, rgba);
     }
 }
 
@@ -217,8 +258,10 @@ void page_backdrop(const page_sphere *s, int size, uint32_t *rgba) {
                     z = 1 - (2 * (float)(i / size) + 1) / (float)size;
         const float world[3] = {x, 1.6f, z};
         float w[3], rgb[4] = {0, 0, 0, 0};
+        int place[3];
         turn_back(s, world, w);
         mu_ibl_globe_add(&s->around->globe, w, 0.4f * last, bright, rgb);
-        rgba[i] = page_tone_of(&s->tone, s->exposure, rgb, 1);
+        page_tone_places(s->exposure, 3, rgb, place);
+        rgba[i] = page_tone_bytes(&s->tone, place, 1);
     }
 }

@@ -9,6 +9,7 @@
 #define PAGE_TONE_H
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define PAGE_WHITE 6.0f
@@ -28,13 +29,17 @@ static inline void page_tone_make(page_tone *t) {
     }
 }
 
-/* Bytes r, g, b, a of three radiances and an opacity. */
-static inline uint32_t page_tone_of(const page_tone *t, float exposure, const float rgb[4], float opacity) {
-    int place[4];
-    for (int k = 0; k < 4; k++) { /* four at a time, the last unused */
-        const float x = exposure * (rgb[k] > 0 ? rgb[k] : 0), most = x < 1e6f ? x : 1e6f;
-        place[k] = (int)(most / (1 + most) * PAGE_TONES + 0.5f);
+/* Where radiances are in the table; four at a time. */
+static inline void page_tone_places(float exposure, size_t count, const float *restrict radiance,
+                                    int *restrict place) {
+    for (size_t i = 0; i < count; i++) {
+        const float x = exposure * (radiance[i] > 0 ? radiance[i] : 0), most = x < 1e6f ? x : 1e6f;
+        place[i] = (int)(most / (1 + most) * PAGE_TONES + 0.5f);
     }
+}
+
+/* Bytes r, g, b, a of three of them and an opacity. */
+static inline uint32_t page_tone_bytes(const page_tone *t, const int place[3], float opacity) {
     return (uint32_t)t->of[place[0]] | (uint32_t)t->of[place[1]] << 8 | (uint32_t)t->of[place[2]] << 16 |
            (uint32_t)(opacity * 255 + 0.5f) << 24;
 }

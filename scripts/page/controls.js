@@ -33,8 +33,9 @@ export class Controls {
         }
     }
 
-    show(state) {
-        this.state = state;
+    // `state`
+    show() {
+        const { state } = this;
         for (const input of this.inputs) {
             const value = String(read(state, input.dataset.key));
             if (input.value === value) continue;

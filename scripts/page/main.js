@@ -15,6 +15,7 @@ import { Team } from "./team.js";
 
 const byId = (id) => document.getElementById(id);
 const PANEL = { moving: 112, still: 240 }, REST = 150; // pixels of a panel, and after how many ms it is at rest
+const PATIENCE = 3, READABLE = 4; // frames of the browser's that the sphere is waited for; while all moves, numbers are shown in one of so many
 const SPHERE = 0.88; // radius in its picture
 
 // The color of densities, as bytes r, g, b.
@@ -36,6 +37,7 @@ class Page {
             (name, space) => new LobePanel(core, space, byId(`${name}-picture`), byId(name), PANEL.still));
         this.numbers = new Numbers(core, byId("numbers"), { eval: byId("eval-line"), axis: byId("axis-line") });
         this.sphere = new SphereView(team, byId("sphere-picture"), byId("sphere-behind"), byId("status"), choices);
+        this.waited = this.unread = 0;
         this.addHandles();
         this.addButtons();
         addEventListener("hashchange", () => location.hash.slice(1) !== textOfState(this.state) && this.replace(stateOfText(location.hash, choices)));
@@ -101,7 +103,8 @@ class Page {
             const to = this.state.turn + 0.03 * (now - before);
             before = now;
             this.state = { ...this.state, turn: (to + 540) % 360 - 180 };
-            this.controls.show(this.state);
+            this.controls.state = this.state;
+            this.controls.show();
             this.sphere.show(this.state);
             requestAnimationFrame(turn);
         };
@@ -118,12 +121,12 @@ class Page {
         const set = this.core.page_material_set(this.material, this.materialPlace.set(materialNumbers(state, this.choices)));
         const at = (place) => new TextDecoder().decode(new Uint8Array(this.core.memory.buffer).slice(place, place + 200)).split("\0")[0];
         byId("complaint").textContent = set ? "" : `${at(this.core.page_material_field(this.material))}: ${at(this.core.page_material_complaint(this.material))}`;
-        this.controls.show(state);
-        this.map.show(state.M);
-        this.state = state;
+        this.state = this.controls.state = state;
+        this.map.M = state.M;
+        this.ask();
         if (!set) return; // the pictures stay those of the last material that is one
+        this.drawn = state;
         this.changed = performance.now();
-        if (!this.asked) this.asked = requestAnimationFrame(() => this.show());
         this.sphere.show(state);
         clearTimeout(this.remembering);
         this.remembering = setTimeout(() => this.remember(), 300);
@@ -144,9 +147,24 @@ class Page {
         this.show();
     }
 
-    show() {
+    ask() {
+        if (!this.asked) this.asked = requestAnimationFrame(() => this.follow());
+    }
+
+    // Once per picture of the sphere, if it comes soon: more often the browser's drawing would only take the sphere's time.
+    follow() {
+        const { sphere } = this, late = sphere.busy && sphere.frames === this.followed && this.waited < PATIENCE;
+        this.waited = late ? this.waited + 1 : 0;
         this.asked = 0;
-        const { state } = this, query = this.query.set(queryNumbers(state));
+        if (late) return this.ask();
+        this.followed = sphere.frames;
+        this.show(this.drawn === this.shown || ++this.unread % READABLE === 0);
+    }
+
+    show(digits = true) {
+        this.controls.show();
+        this.map.show();
+        const { drawn: state } = this, query = this.query.set(queryNumbers(state));
         const numbers = this.numbers.ask(this.material, query);
         const moving = performance.now() - this.changed < REST, size = moving ? PANEL.moving : PANEL.still;
         clearTimeout(this.settling);
@@ -155,7 +173,9 @@ class Page {
         for (const panel of this.panels) panel.show(this.material, query, state, numbers.slope_sigma, directionOf(state.view), size, this.ink);
         for (const [handle, key, place] of this.handles)
             handle.put(...place(directionOf(state[key])), `${state[key][0]}° from the normal, azimuth ${state[key][1]}°`);
-        this.numbers.show(state, numbers);
+        this.shown = state;
+        if (digits) this.numbers.show(state, numbers);
+        else this.ask();
         byId("alpha").textContent = `α = ${Number((state.roughness ** 2).toPrecision(4))}`;
         byId("determinant").textContent = `det M = ${Number((state.M[0] * state.M[3] - state.M[1] * state.M[2]).toPrecision(4))}`;
         document.documentElement.dataset.shown = Number(document.documentElement.dataset.shown ?? 0) + 1;

@@ -29,10 +29,10 @@ export class MapPanel {
         this.change(M);
     }
 
-    show(M) {
-        const largest = Math.max(Math.hypot(M[0], M[2]), Math.hypot(M[1], M[3]));
+    // `M`
+    show() {
+        const { M } = this, largest = Math.max(Math.hypot(M[0], M[2]), Math.hypot(M[1], M[3]));
         if (!this.handles.some((handle) => handle.dragged)) this.reach = reaches.find((reach) => reach >= 1.02 * largest) ?? largest;
-        this.M = M;
         const at = (x, y) => `${((M[0] * x + M[1] * y) / this.reach).toFixed(4)} ${(-(M[2] * x + M[3] * y) / this.reach).toFixed(4)}`;
         let grid = "", ellipse = "";
         for (let i = -4; i <= 4; i++) grid += `M${at(i, -4)}L${at(i, 4)}M${at(-4, i)}L${at(4, i)}`;

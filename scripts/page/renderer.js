@@ -43,7 +43,8 @@ export class Renderer {
         return this.core.memory.buffer.slice(this.behind, this.behind + 4 * size * size);
     }
 
-    // job: { material, query, sphere: numbers, surroundings, size, first, step, pass, sampled, albedo, backdrop, room }. Rows come in pairs, from the
+    // job: { material, query, sphere: numbers, surroundings, size, first, step, pass, sampled, moving, albedo, backdrop, room }. While the
+    // material moves, every other picture has the albedos of the one before: they differ by less than so few directions are off. Rows come in pairs, from the
     // top and from the bottom: pairs first, first + step, ... Returns their pixels,
     // in `room`, an ArrayBuffer, where it has that size;
     // the first of all also the backdrop, of that size unless 0.
@@ -52,8 +53,10 @@ export class Renderer {
         const said = String(job.material), anew = said !== this.said.material || job.albedo > (this.said.albedo ?? 0);
         if (said !== this.said.material) core.page_material_set(this.material, this.place("material", job.material));
         const around = this.around(job.surroundings);
-        if (anew) this.said = { material: said, albedo: job.albedo };
-        core.page_sphere_set(this.sphere, this.material, around, this.place("query", job.query), this.place("sphere", job.sphere), anew ? job.albedo : 0);
+        const albedo = anew && !(job.moving && this.made) ? job.albedo : 0;
+        this.made = albedo > 0;
+        if (anew) this.said = { material: said, albedo };
+        core.page_sphere_set(this.sphere, this.material, around, this.place("query", job.query), this.place("sphere", job.sphere), albedo);
         this.reserve(job.size, pairs);
         if (job.sampled && job.pass === 0) new Uint8Array(core.memory.buffer, this.sums, 3 * this.bytes).fill(0);
         for (let i = 0, row = job.first; i < pairs; i++, row += job.step) {

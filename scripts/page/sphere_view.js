@@ -35,7 +35,7 @@ export class SphereView {
         return {
             material: materialNumbers(state, choices), query: queryNumbers(state), sphere: sphereNumbers(state, size, choices),
             surroundings: choices.surroundings.indexOf(state.surroundings), size, pass: this.pass,
-            sampled: state.technique === "sampled", albedo: moving ? ALBEDO.moving : ALBEDO.still, backdrop,
+            sampled: state.technique === "sampled", moving, albedo: moving ? ALBEDO.moving : ALBEDO.still, backdrop,
         };
     }
 
@@ -49,9 +49,9 @@ export class SphereView {
             if (taken > 1.15 * FRAME && this.coarse < COARSER.length - 1) this.coarse++;
             else if (this.coarse > 0 && taken * (COARSER[this.coarse - 1] / COARSER[this.coarse]) ** 2 < 0.85 * FRAME) this.coarse--;
         }
-        const samples = this.state.technique === "sampled" ? ` · ${this.pass + 1} samples a pixel` : "";
         const rate = moving ? ` · ${this.ends.length} frames/s` : "", passes = this.state.technique === "sampled" ? ` · ${this.pass + 1} samples a pixel` : "";
-        this.status.textContent = `${size}²${rate}${passes}`;
+        const text = `${size}²${rate}${passes}`;
+        if (this.status.textContent !== text) this.status.textContent = text;
         Object.assign(this.status.dataset, { size, worker: this.team.taken, taken, frames: this.frames, rate: this.ends.length, pass: this.pass });
     }
 

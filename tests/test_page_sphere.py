@@ -90,6 +90,38 @@ class Sphere(page_host.Worked):
         self.assertLess(abs(sampled.mean() / axis.mean() - 1), 5e-3)
         self.assertGreater(np.abs(sampled - axis).max(), 1e-3)  # it is another estimate
 
+    def test_at_rest_all_is_as_if_nothing_had_moved(self):
+        """Coarse while M moves; and then the pixels, the panels' pictures and the digits of a page that opens with that M."""
+        rests = "!musurf.sphere.busy && !musurf.asked && performance.now() - musurf.sphere.changed > 500"
+        seen = """[...["sphere-picture", "slopes-picture", "normals-picture", "reflected-picture"].map((id) => document.getElementById(id).toDataURL()),
+                  document.getElementById("numbers").textContent, document.getElementById("eval-line").textContent]"""
+        self.page.run("location.hash = 'size=256&metal=Cu&M=1,0.5,0,1'")
+        self.page.until("musurf.state.M[1] === 0.5 && " + rests)
+        before = self.page.run(seen)
+        moving = self.page.run(f"""new Promise((done) => {{
+            const input = document.querySelector('[data-key="M.1"]');
+            let n = 0;
+            const step = () => {{
+                input.value = 0.5 + 0.05 * ++n, input.dispatchEvent(new Event("input"));
+                if (n < 30) requestAnimationFrame(step);
+                else setTimeout(() => done({seen}), 60);
+            }};
+            step();
+        }})""")
+        self.page.until(rests)
+        rested = self.page.run(seen)
+        with chromium.Page(PAGE.as_uri() + self.page.run("location.hash")) as page:
+            page.until(READY)
+            page.until(rests)
+            self.assertEqual(page.run("musurf.state.M[1]"), 2)
+            opened = page.run(seen)
+        self.page.run("location.hash = ''")
+        for i, (a, b, c, d) in enumerate(zip(before, moving, rested, opened)):
+            self.assertNotEqual(a, c)
+            self.assertEqual(c, d)
+            if i < 4:
+                self.assertNotEqual(b, c)  # it was coarse
+
     def test_frames_go_on_while_the_light_turns(self):
         before = self.page.run("Number(document.getElementById('status').dataset.frames)")
         pixels = """(() => {

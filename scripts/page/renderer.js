@@ -43,11 +43,10 @@ export class Renderer {
         return this.core.memory.buffer.slice(this.behind, this.behind + 4 * size * size);
     }
 
-    // job: { material, query, sphere: numbers, surroundings, size, first, step, pass, sampled, moving, albedo, backdrop, room }. While the
-    // material moves, every other picture has the albedos of the one before: they differ by less than so few directions are off. Rows come in pairs, from the
-    // top and from the bottom: pairs first, first + step, ... Returns their pixels,
-    // in `room`, an ArrayBuffer, where it has that size;
-    // the first of all also the backdrop, of that size unless 0.
+    // job: { material, query, sphere: numbers, surroundings, size, first, step, pass, sampled, moving, albedo, backdrop, room }. Rows come in pairs,
+    // from the top and from the bottom: pairs first, first + step, ... Returns their pixels, in `room`, an ArrayBuffer, where it has that size;
+    // the first of all also the backdrop, of that size unless 0. While the material moves, every other picture has the albedos of the one
+    // before: where a column of M moves by 0.07 a picture they differ by less than 1 %, and so few directions are off by 2 to 5 %.
     run(job) {
         const { core } = this, half = job.size / 2, pairs = Math.ceil((half - job.first) / job.step);
         const said = String(job.material), anew = said !== this.said.material || job.albedo > (this.said.albedo ?? 0);

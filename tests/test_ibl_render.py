@@ -141,7 +141,7 @@ class Render(unittest.TestCase):
                 self.assertLess(numpy.abs(seen - 1).max(), 1e-5, (mirror, by))
 
     def test_usual_reads(self):
-        """Where nobody says how many: 16, and of lobes the 6 that take as long."""
+        """Where nobody says how many: 16, and of lobes 6."""
         ball = [{"shape": "sphere", "radius": 1, "material": ggx(0.4, 0.8)}]
         for by, usual in (("major-axis", 16), ("lobe", 6)):
             left, said, other = (self.render(by, ball, STUDIO, [0, -1, 0.2], size=8, integrator=more) for more in ({}, {"reads": usual}, {"reads": 26 - usual}))

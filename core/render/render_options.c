@@ -19,7 +19,7 @@ static const mu_option option_list[] = {
     {"o", "OUT.exr", "the image, written when it is complete and whole"},
     {"integrator", "path|split|bent-normal|major-axis|lobe|filtered", "how light is found (default: the scene's, or path)"},
     {"reads", "N|auto", "of the filtered environment, of major-axis, lobe and filtered, 1 to 64 (default: the scene's, or 16,\n"
-     "and of lobe 6, which take as long); auto: of lobe as many as each pixel needs, 1 to 33, of others 16"},
+     "and of lobe 6); auto: of lobe as many as each pixel needs, 1 to 33, of others 16"},
     {"spp", "N", "samples per pixel (default: the scene's)"},
     {"time", "S", "stop before S seconds have passed; at least one sample per pixel is taken"},
     {"noise", "E", "stop when the mean relative standard error of the pixels is E or less"},

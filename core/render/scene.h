@@ -42,7 +42,7 @@ typedef struct mu_integrator_settings {
     _Bool by_image;             /* lit by `technique` (image_light.h); else by paths */
     mu_ibl_technique technique; /* read if by_image */
     uint32_t reads;             /* of the filtered environment, of techniques that have a choice; 0: as needed;
-                                 * MU_READS_USUAL: 16, or of lobes as many as take as long */
+                                 * MU_READS_USUAL: 16, or of lobes MU_IBL_READS_OF_LOBE */
     float k, beta;              /* of the major axis, as is this: core/ibl/ibl_real.h */
     mu_ibl_shift appendix_c;
     _Bool tails, means; /* of lobes: whether a distribution that is not GGX, and a mean slope, move the reads */

@@ -25,12 +25,10 @@ static double tail(const musurf_material *material, double share) {
     return mu_ibl_tail_of(&material->parsed.definition, share);
 }
 
-static size_t pieces(const musurf_material *material, const double *m, size_t most, double (*out)[3]) {
-    const mu_definition *d = &material->parsed.definition;
-    if (d->ndf != MU_TABULATED || d->multiple != MU_SINGLE || !material->has_moments || (!m && material->parsed.varying)) return 0;
-    const double *whole = m ? m : d->transform;
-    return material->in_float ? mu_ibl_pieces_f(material->in_float, material->moments.mean, whole, most, out)
-                              : mu_ibl_pieces_d(material->in_double, material->moments.mean, whole, most, out);
+static uint32_t albedo(const void *closure, double allowed, double rgb[3]) {
+    const bound *b = closure;
+    return (uint32_t)(b->material->in_float ? mu_ibl_albedo_of_cells_f(&b->closure.f, allowed, rgb)
+                                            : mu_ibl_albedo_of_cells_d(&b->closure.d, allowed, rgb));
 }
 
-const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail, pieces};
+const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail, albedo};

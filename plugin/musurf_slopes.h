@@ -31,10 +31,9 @@ typedef struct musurf_slopes {
     /* [any] Read only if `size` says it is there. Before M: the distance from the mean within which that share of the slopes
      * are, over that of the GGX of the same covariance; 1 where that is not known. */
     double (*tail)(const musurf_material *material, double share);
-    /* [any] Read only if `size` says it is there. Of a distribution in pieces, whose f jumps, under the whole M `m` (NULL: its own):
-     * up to `most` slopes x, y, and the area of slopes that each stands for, so that sums of P22 g area come to the integral of
-     * P22 g. Their number; 0: f is smooth, or not known by slopes alone. */
-    size_t (*pieces)(const musurf_material *material, const double *m, size_t most, double (*out)[3]);
+    /* [any] Read only if `size` says it is there. Of a bound closure of the type, whose f jumps: how much of even light it reflects, to
+     * `allowed`. 0: not known otherwise than by f. */
+    uint32_t (*albedo)(const void *closure, double allowed, double rgb[3]);
 } musurf_slopes;
 
 #ifdef __cplusplus

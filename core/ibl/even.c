@@ -91,8 +91,4 @@ double mu_ibl_even_direction(const mu_ibl_even *e, const double u[2], double wi[
     return TWO_PI * e->spread[0] * e->spread[1] * r * stretch * angle;
 }
 
-double mu_ibl_even_of_slope(const double wo[3], const double slope[2], double wi[3]) {
-    return mirrored(wo, (const double[2]){-slope[0], -slope[1]}, wi);
-}
-
 #endif

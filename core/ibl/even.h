@@ -29,7 +29,5 @@ typedef struct mu_ibl_even {
 void mu_ibl_even_make(const mu_ibl_lobe_d *lobe, const double wo[3], mu_ibl_even *even);
 /* u in [0, 1)². Returns the weight; 0: no direction. */
 double mu_ibl_even_direction(const mu_ibl_even *even, const double u[2], double wi[3]);
-/* The weight, over areas of slopes, of the direction that a micronormal of slope (dz/dx, dz/dy) sends wo into; 0: none. */
-double mu_ibl_even_of_slope(const double wo[3], const double slope[2], double wi[3]);
 
 #endif

@@ -2,10 +2,8 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /* ibl_real.h: the part of ibl.h that exists once per precision. Included by it alone, twice. */
 
-/* Of a histogram that scatters singly: slopes that stand for all (pieces.c). With `mean` before M and M itself, up to `most` of them
- * under M, x, y and area: the sum of area P22 g is the integral of P22 g, of any g that is smooth. */
-size_t MU_SUFFIX(mu_ibl_pieces)(const MU_SUFFIX(mu_surface) * surface, const double mean[2], const double transform[4], size_t most,
-                                double (*out)[3]);
+/* How much of even light a bound histogram reflects, F included, to `allowed` (cells.c). 0: it is none, or scatters more than once. */
+int MU_SUFFIX(mu_ibl_albedo_of_cells)(const MU_SUFFIX(mu_closure) * closure, double allowed, double rgb[3]);
 
 /* Sigma by its axes: standard deviations of the slope along U = (turn[0], turn[1]) and along V, a quarter turn on; and the mean
  * slope, of which the axis and its closed forms know nothing. */

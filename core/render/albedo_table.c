@@ -16,7 +16,7 @@
 #include <stdlib.h>
 
 #include "core/ibl/even.h"
-#include "core/render/even_light.h"
+#include "core/render/albedo_source.h"
 #include "core/render/surface_rows.h"
 
 #define TWO_PI 6.28318530717958647692
@@ -24,9 +24,9 @@
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.25f
 enum { SIGMAS_MOST = 16 };
-/* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least; slopes that stand for a histogram. */
+/* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least. */
 #define ENOUGH 1e-4
-enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11, PIECES = 1 << 12 };
+enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11 };
 /* The view of the node on the horizon. */
 #define LEAST_COSINE 1e-6f
 /* Roughnesses of which the height of nodes takes notice. */
@@ -77,26 +77,6 @@ static void view_of(const float sigma[2], place at, float w[3]) {
     w[0] = (float)(flat * x), w[1] = (float)(flat * y), w[2] = (float)z;
 }
 
-/* A closure of the material, for even_light.h. */
-typedef struct bound {
-    const musurf_material_type *type;
-    void *closure;
-} bound;
-
-static void toward(void *context, const double wi[3], double rgb[3]) {
-    const bound *b = context;
-    musurf_value value;
-    b->type->eval(b->closure, (const float[3]){(float)wi[0], (float)wi[1], (float)wi[2]}, MUSURF_ALL_LOBES, &value);
-    for (int c = 0; c < 3; c++) rgb[c] = value.lobes ? (double)value.f[c] : 0;
-}
-
-static void drawn(void *context, const double u[3], double rgb[3]) {
-    const bound *b = context;
-    musurf_sample s;
-    b->type->sample(b->closure, (const float[3]){(float)u[0], (float)u[1], (float)u[2]}, MUSURF_ALL_LOBES, &s);
-    for (int c = 0; c < 3; c++) rgb[c] = s.lobe ? (double)s.weight[c] : 0;
-}
-
 /* The M that makes the slopes' standard deviations `sigma` along x and y: M = diag(1 / sigma) root^T, since then M^-T root root^T
  * M^-1 is diag(sigma²); and the lobe under it. */
 static void node_map(const work *w, const float sigma[2], float m[4], mu_ibl_lobe_d *lobe) {
@@ -110,30 +90,22 @@ static void node_map(const work *w, const float sigma[2], float m[4], mu_ibl_lob
     lobe->mean[1] = ((double)m[0] * mean[1] - (double)m[1] * mean[0]) / det;
 }
 
-static size_t pieces_of(const work *w, const float m[4], double (*out)[3]) {
-    const double whole[4] = {(double)m[0], (double)m[1], (double)m[2], (double)m[3]};
-    if (!w->slopes || w->slopes->size <= offsetof(musurf_slopes, pieces) || !w->slopes->pieces) return 0;
-    return w->slopes->pieces(w->material->compiled, w->map ? whole : NULL, PIECES, out);
-}
-
 /* A closure under the M of two sigmas, and what is asked of it. */
 typedef struct seat {
     float sigma[2], m[4];
     mu_ibl_lobe_d lobe;
-    bound bound;
-    double (*pieces)[3];
+    mu_albedo_bound bound;
     mu_even_source source;
 } seat;
 
 static void seat_free(seat *s) {
     free(s->bound.closure);
-    free(s->pieces);
 }
 
 static _Bool seat_make(const work *w, uint32_t first, uint32_t second, seat *s) {
     const mu_albedo_table *t = w->table;
     const mu_ibl_lobe_f *of = w->lobe;
-    *s = (seat){.sigma = {of->sigma[0], of->sigma[1]}, .m = {1, 0, 0, 1}, .bound = {.type = w->material->type}};
+    *s = (seat){.sigma = {of->sigma[0], of->sigma[1]}, .m = {1, 0, 0, 1}, .bound = {w->material->type, NULL, w->slopes}};
     s->lobe = (mu_ibl_lobe_d){.sigma = {(double)of->sigma[0], (double)of->sigma[1]},
                               .turn = {(double)of->turn[0], (double)of->turn[1]},
                               .mean = {(double)of->mean[0], (double)of->mean[1]}};
@@ -143,13 +115,8 @@ static _Bool seat_make(const work *w, uint32_t first, uint32_t second, seat *s) 
         node_map(w, s->sigma, s->m, &s->lobe);
     }
     s->bound.closure = aligned_alloc(64, (w->material->plan.closure_bytes + 63u) / 64 * 64);
-    s->pieces = malloc(PIECES * sizeof *s->pieces);
-    if (!s->bound.closure || !s->pieces) {
-        seat_free(s);
-        return 0;
-    }
-    s->source = (mu_even_source){&s->bound, toward, drawn, .lobe = &s->lobe, .slope_count = pieces_of(w, s->m, s->pieces)};
-    if (s->source.slope_count) s->source.slopes = (const double(*)[3])s->pieces;
+    if (!s->bound.closure) return 0;
+    s->source = mu_albedo_source(&s->bound, &s->lobe);
     if (w->material->plan.lobes & MUSURF_DELTA_LOBES || !(s->sigma[1] > 0)) s->source.lobe = NULL;
     return 1;
 }
@@ -191,7 +158,7 @@ static double mirrored(const work *w, const seat *s, const float v[3], const flo
     double wo[3], rgb[3];
     const double *turn = s->lobe.turn, x = (double)(at & 2 ? -l[0] : l[0]), y = (double)(at & 1 ? -l[1] : l[1]);
     if (!seat_look(w, s, (const float[3]){at & 2 ? -v[0] : v[0], at & 1 ? -v[1] : v[1], v[2]}, wo)) return 0;
-    toward(s->source.context,
+    s->source.toward(s->source.context,
            (const double[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, (double)l[2]}, rgb);
     return rgb[0] + rgb[1] + rgb[2];
 }
@@ -215,7 +182,7 @@ static _Bool is_even(const work *w) {
     enum { VIEWS = 4, LIGHTS = 34 };
     seat s;
     if (!seat_make(w, 0, 0, &s)) return 0;
-    _Bool even = s.source.lobe && !s.source.slopes;
+    _Bool even = s.source.lobe;
     for (int i = 0; even && i < VIEWS * LIGHTS; i++) {
         float v[3];
         double wo[3], u[2], wi[3];

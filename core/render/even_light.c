@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * even_light.c: see even_light.h. f cos, of directions along the lobe (even.h), converges fast where the lobe is smooth; a
- * random walk, whose f is noise, and a histogram, whose jumps are many, are better off by weights of their own samples, bounded
- * if random.
+ * even_light.c: see even_light.h. f cos, of directions along the lobe (even.h), converges fast where the lobe is smooth, and as
+ * fast as it must where a tilt creases it; a random walk, whose f is noise, is better off by weights of its own samples, bounded
+ * if random. What f jumps in, a histogram, knows its albedo itself, or nobody does.
  *
  * Lattices of Fibonacci numbers of points, the one after the other: errors fall by more than 2 from each to the next (those of
- * 144 points are some 1e-3), so that two steps of which the first is below 4 `enough` and the second below 2 leave `enough`.
+ * 144 points are some 1e-3), so that three steps of which the first is below 8 `enough`, the second below 4 and the third below 2
+ * leave `enough`: of two, both are small by chance once in a few hundred views of a narrow tilt.
  */
 #include "core/render/even_light.h"
 
@@ -15,7 +16,9 @@
 #include "core/ibl/even.h"
 #include "core/render/philox.h"
 
-enum { FIRST = 89, SECOND = 144, DRAWN = 256, LEAST_BATCHES = 4 };
+enum { FIRST = 55, STEPS = 3, DRAWN = 256, LEAST_BATCHES = 4 };
+/* What directions are off by, over `enough`, from which on f may be noise. */
+#define NOISY 32
 
 static void by_directions(const mu_even_source *s, const mu_ibl_even *even, mu_ibl_fibonacci lattice,
                           const double shift[2], double mean[3]) {
@@ -28,18 +31,6 @@ static void by_directions(const mu_even_source *s, const mu_ibl_even *even, mu_i
         s->toward(s->context, wi, rgb);
         for (int c = 0; c < 3; c++) mean[c] += weight * rgb[c];
     }
-}
-
-static mu_even_mean by_slopes(const mu_even_source *s, const double wo[3]) {
-    mu_even_mean out = {{0, 0, 0}, 0};
-    for (size_t i = 0; i < s->slope_count; i++) {
-        double wi[3], rgb[3];
-        const double weight = s->slopes[i][2] * mu_ibl_even_of_slope(wo, s->slopes[i], wi);
-        if (!(weight > 0)) continue;
-        s->toward(s->context, wi, rgb);
-        for (int c = 0; c < 3; c++) out.rgb[c] += weight * rgb[c];
-    }
-    return out;
 }
 
 static void by_samples(const mu_even_source *s, size_t first, size_t count, const double shift[3], double mean[3]) {
@@ -79,26 +70,27 @@ static mu_even_mean converge_by_directions(const mu_even_source *s, const double
     mu_ibl_even even;
     mu_ibl_fibonacci lattice = mu_ibl_fibonacci_below(FIRST);
     mu_even_mean mean = {{0, 0, 0}, INFINITY};
-    double before = INFINITY, next[3];
+    double steps[STEPS] = {INFINITY, INFINITY, INFINITY}, next[3]; /* the last ones */
     mu_ibl_even_make(s->lobe, wo, &even);
     for (size_t calls = 0;; lattice = (mu_ibl_fibonacci){lattice.count, lattice.before + lattice.count}) {
         by_directions(s, &even, lattice, still, next);
-        double step = lattice.count > FIRST ? 0 : INFINITY;
+        double step = calls ? 0 : INFINITY;
         for (int c = 0; c < 3; c++) {
             step = fmax(step, fabs(next[c] - mean.rgb[c]));
             mean.rgb[c] = next[c];
         }
-        mean.error = lattice.count > SECOND ? fmax(step / 2, before / 4) : INFINITY;
-        before = step, calls += lattice.count;
+        steps[2] = steps[1], steps[1] = steps[0], steps[0] = step;
+        mean.error = fmax(fmax(steps[0] / 2, steps[1] / 4), steps[2] / 8), calls += lattice.count;
         if (mean.error <= effort->enough || calls + lattice.before + lattice.count > effort->most) return mean;
     }
 }
 
 mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], mu_even_effort *effort) {
-    if (s->slopes) return by_slopes(s, wo);
+    mu_even_mean mean = {{0, 0, 0}, 0};
+    if (s->known && s->known(s->context, effort->enough, mean.rgb)) return mean;
     if (!s->lobe) return converge_by_samples(s, effort);
-    const mu_even_mean mean = converge_by_directions(s, wo, effort);
-    if (mean.error <= 2 * effort->enough) return mean; /* the other way would take as long for little */
+    mean = converge_by_directions(s, wo, effort);
+    if (mean.error <= NOISY * effort->enough) return mean;
     const mu_even_mean other = converge_by_samples(s, effort);
     effort->drawn = other.error < mean.error;
     return effort->drawn ? other : mean;

@@ -17,8 +17,7 @@ typedef struct mu_even_source {
     void (*toward)(void *context, const double wi[3], double rgb[3]); /* f cos, wi.z > 0; of no delta lobe */
     void (*drawn)(void *context, const double u[3], double rgb[3]);   /* weight of a sample; 0 below the horizon */
     const mu_ibl_lobe_d *lobe; /* where light comes from, roughly; NULL: not known, or there are delta lobes: by samples alone */
-    const double (*slopes)[3]; /* x, y and area: slopes that stand for all (musurf_slopes.h); NULL: by the lobe */
-    size_t slope_count;
+    _Bool (*known)(void *context, double enough, double rgb[3]); /* itself knows all of it (musurf_slopes.h); NULL: does not */
 } mu_even_source;
 
 /* Means of batches, and the largest standard error of them. */

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/* albedo_source.c: see albedo_source.h. */
+#include "core/render/albedo_source.h"
+
+#include <stddef.h>
+
+static void toward(void *context, const double wi[3], double rgb[3]) {
+    const mu_albedo_bound *b = context;
+    musurf_value value;
+    b->type->eval(b->closure, (const float[3]){(float)wi[0], (float)wi[1], (float)wi[2]}, MUSURF_ALL_LOBES, &value);
+    for (int c = 0; c < 3; c++) rgb[c] = value.lobes ? (double)value.f[c] : 0;
+}
+
+static void drawn(void *context, const double u[3], double rgb[3]) {
+    const mu_albedo_bound *b = context;
+    musurf_sample s;
+    b->type->sample(b->closure, (const float[3]){(float)u[0], (float)u[1], (float)u[2]}, MUSURF_ALL_LOBES, &s);
+    for (int c = 0; c < 3; c++) rgb[c] = s.lobe ? (double)s.weight[c] : 0;
+}
+
+static _Bool known(void *context, double enough, double rgb[3]) {
+    const mu_albedo_bound *b = context;
+    return b->slopes->albedo(b->closure, enough, rgb) != 0;
+}
+
+mu_even_source mu_albedo_source(mu_albedo_bound *bound, const mu_ibl_lobe_d *lobe) {
+    const musurf_slopes *s = bound->slopes;
+    const _Bool tells = s && s->size > offsetof(musurf_slopes, albedo) && s->albedo;
+    return (mu_even_source){.context = bound, .toward = toward, .drawn = drawn, .lobe = lobe, .known = tells ? known : NULL};
+}

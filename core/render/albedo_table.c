@@ -8,12 +8,15 @@
  * quarter turn at either end: nodes are even in the azimuth of (sqrt(sigma_U) x, sqrt(sigma_V) y), which widens both ends alike.
  * Near the horizon albedos go with the cosine's root, at the pole, of a tilt, with the sine: of half the tangents that both
  * have in common roots are taken. A material that is the same mirrored at the lobe's axes, which is tried out, is asked for a quarter turn; a
- * tilt and a histogram are not, and have edges of their own: more nodes.
+ * tilt and a histogram are not: more nodes, and creases where what masks the view begins. So each node is told from others twice as far
+ * apart: of a smooth table that is off by 16 times what lies between nodes is, at a crease twice. Where it is off by more than TOLD the
+ * middle of the cells around is asked, and those that are off by more than NEAR are no part of the table.
  */
 #include "core/render/albedo_table.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/ibl/even.h"
 #include "core/render/albedo_source.h"
@@ -26,7 +29,11 @@
 enum { SIGMAS_MOST = 16 };
 /* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least. */
 #define ENOUGH 1e-4
-enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 11 };
+enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 12 };
+#define TOLD 6e-4f
+#define NEAR 4e-4f
+/* How far beyond the outermost nodes of a sigma a hit may be, in nodes. */
+#define BEYOND 0.02f
 /* The view of the node on the horizon. */
 #define LEAST_COSINE 1e-6f
 /* Roughnesses of which the height of nodes takes notice. */
@@ -214,47 +221,6 @@ static _Bool is_drawn(const work *w) {
     return effort.drawn;
 }
 
-_Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
-                           const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
-                           uint32_t threads, mu_error *error) {
-    *t = (mu_albedo_table){.heights = 96, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
-    work w = {.table = t, .material = material, .map = map, .still = still, .lobe = low};
-    w.slopes = material->type->extension ? material->type->extension(MUSURF_SLOPES_ID) : NULL;
-    if (map && low->sigma[1] > 0) { /* else there is no M that makes it of a mirror: the identity stands for all */
-        w.root[0] = sqrt(still->xx), w.root[1] = still->xx > 0 ? still->xy / w.root[0] : 0;
-        w.root[2] = sqrt(fmax(still->yy - w.root[1] * w.root[1], 0));
-        place_sigmas(t, low, high);
-    }
-    const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
-    w.enough = varies ? 2 * ENOUGH : ENOUGH;
-    w.drawn = is_drawn(&w);
-    if (varies) t->heights = 32;
-    if (map || material->plan.needs & MUSURF_NEEDS_TANGENT) {
-        const _Bool even = is_even(&w);
-        if (varies) t->azimuths = even ? 64 : 32; /* else taken as if M turned it, which is off by more */
-        else t->azimuths = even ? 128 : w.drawn ? 48 : 192; /* what is noise needs samples, and is smooth */
-        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 96;
-        t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
-    }
-    const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;
-    w.most = CALLS / nodes > LEAST_CALLS ? CALLS / nodes : LEAST_CALLS;
-    t->rgb = malloc(mu_albedo_table_bytes(t));
-    if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
-    mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
-    for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
-        if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
-    return 1;
-}
-
-void mu_albedo_table_free(mu_albedo_table *t) {
-    free(t->rgb);
-    t->rgb = NULL;
-}
-
-size_t mu_albedo_table_bytes(const mu_albedo_table *t) {
-    return 3 * sizeof(float) * t->heights * t->rows * t->sigmas[0] * t->sigmas[1];
-}
-
 /* Up to four nodes, from `first` on, and their weights. */
 typedef struct stencil {
     uint32_t first, count;
@@ -294,13 +260,22 @@ static uint32_t row_of(const mu_albedo_table *t, uint32_t azimuth) {
     return 4 * a > t->azimuths ? t->azimuths / 2 - a : a;
 }
 
-void mu_albedo_table_at(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
+/* False: its cell is no part of the table, or a sigma is beyond the nodes. */
+static _Bool interpolate(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
     const float *turn = lobe->turn;
     const place at = place_of(lobe->sigma, turn[0] * wo[0] + turn[1] * wo[1], turn[0] * wo[1] - turn[1] * wo[0], wo[2]);
     const stencil z = among(at.height * (float)(t->heights - 1), t->heights), phi = around(at.around, t->azimuths);
     stencil s[2];
-    for (int k = 0; k < 2; k++)
-        s[k] = among(t->sigmas[k] > 1 ? (logf(lobe->sigma[k]) - t->least[k]) / t->step[k] : 0, t->sigmas[k]);
+    _Bool inside = 1;
+    for (int k = 0; k < 2; k++) {
+        const float node = t->sigmas[k] > 1 ? (logf(lobe->sigma[k]) - t->least[k]) / t->step[k] : 0;
+        inside = inside && node >= -BEYOND && node <= (float)(t->sigmas[k] - 1) + BEYOND;
+        s[k] = among(node, t->sigmas[k]);
+    }
+    if (t->sharp) {
+        const uint32_t cell = (uint32_t)fmaxf(at.height * (float)(t->heights - 1), 0), azimuth = (uint32_t)(at.around * (float)t->azimuths);
+        inside = !t->sharp[(size_t)(azimuth % t->azimuths) * (t->heights - 1) + (cell < t->heights - 2 ? cell : t->heights - 2)];
+    }
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (uint32_t i = 0; i < s[0].count; i++)
         for (uint32_t j = 0; j < s[1].count; j++)
@@ -313,4 +288,104 @@ void mu_albedo_table_at(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, con
                     for (int c = 0; c < 3; c++) rgb[c] += weight * z.weight[l] * a[3 * l + (uint32_t)c];
             }
     for (int c = 0; c < 3; c++) rgb[c] = fmaxf(rgb[c], 0);
+    return inside;
+}
+
+/* By how much the middle of four values twice as far apart misses the one that is there; and so beside their first. */
+static float missed(const float *v, ptrdiff_t step, const float at[4]) {
+    float worst = 0;
+    for (int c = 0; c < 3; c++) {
+        float told = 0;
+        for (int k = 0; k < 4; k++) told += at[k] * v[(2 * k - 3) * step + c];
+        worst = fmaxf(worst, fabsf(told - v[c]));
+    }
+    return worst;
+}
+
+/* What a node (of a table without symmetry) is off from what the others say, along both axes; the outermost along views have too few. */
+static float told_off(const mu_albedo_table *t, uint32_t azimuth, uint32_t height) {
+    static const float middle[4] = {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
+    float row[7 * 3];
+    if (height < 3 || height + 3 >= t->heights) return INFINITY;
+    for (uint32_t k = 0; k < 7; k++)
+        memcpy(row + 3 * k, t->rgb + (size_t)3 * ((azimuth + t->azimuths + k - 3) % t->azimuths * t->heights + height), 3 * sizeof *row);
+    return missed(row + 9, 3, middle) + missed(t->rgb + (size_t)3 * (azimuth * t->heights + height), 3, middle);
+}
+
+/* [any] The cells of an azimuth that are no part of the table. */
+static void mark(void *context, uint32_t azimuth) {
+    const work *w = context;
+    const mu_albedo_table *t = w->table;
+    unsigned char *sharp = t->sharp + (size_t)azimuth * (t->heights - 1);
+    mu_even_effort effort = {w->enough, w->most, 0};
+    seat s;
+    if (!seat_make(w, 0, 0, &s)) return;
+    for (uint32_t i = 0; i + 1 < t->heights; i++) {
+        float off = 0, v[3], rgb[3], distance = 0;
+        double wo[3];
+        for (uint32_t k = 0; k < 4; k++) off = fmaxf(off, told_off(t, (azimuth + k / 2) % t->azimuths, i + k % 2));
+        sharp[i] = 0;
+        if (off <= TOLD) continue;
+        view_of(s.sigma, (place){((float)i + 0.5f) / (float)(t->heights - 1), ((float)azimuth + 0.5f) / (float)t->azimuths}, v);
+        if (!seat_look(w, &s, v, wo)) continue;
+        (void)interpolate(t, w->lobe, (const float[3]){(float)wo[0], (float)wo[1], (float)wo[2]}, rgb);
+        const mu_even_mean mean = mu_even_light(&s.source, wo, &effort);
+        for (int c = 0; c < 3; c++) distance = fmaxf(distance, fabsf((float)mean.rgb[c] - rgb[c]));
+        sharp[i] = distance > NEAR;
+    }
+    seat_free(&s);
+}
+
+_Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
+                           const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
+                           uint32_t threads, mu_error *error) {
+    *t = (mu_albedo_table){.heights = 96, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
+    work w = {.table = t, .material = material, .map = map, .still = still, .lobe = low};
+    w.slopes = material->type->extension ? material->type->extension(MUSURF_SLOPES_ID) : NULL;
+    if (map && low->sigma[1] > 0) { /* else there is no M that makes it of a mirror: the identity stands for all */
+        w.root[0] = sqrt(still->xx), w.root[1] = still->xx > 0 ? still->xy / w.root[0] : 0;
+        w.root[2] = sqrt(fmax(still->yy - w.root[1] * w.root[1], 0));
+        place_sigmas(t, low, high);
+    }
+    const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
+    w.enough = varies ? 2 * ENOUGH : ENOUGH;
+    w.drawn = is_drawn(&w);
+    const _Bool lobed = low->sigma[1] > 0 && !w.drawn && !(material->plan.lobes & MUSURF_DELTA_LOBES);
+    _Bool even = 1;
+    if (varies) t->heights = 32;
+    if (map || material->plan.needs & MUSURF_NEEDS_TANGENT) {
+        even = is_even(&w);
+        if (map && lobed && !even) return 1;
+        if (varies) t->azimuths = even ? 64 : 32; /* else noise, taken as if M turned it */
+        else t->azimuths = even ? 128 : w.drawn ? 48 : 192; /* what is noise needs samples, and is smooth */
+        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 96;
+        t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
+    }
+    const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;
+    w.most = CALLS / nodes > LEAST_CALLS ? CALLS / nodes : LEAST_CALLS;
+    t->rgb = malloc(mu_albedo_table_bytes(t));
+    if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
+    mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
+    for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
+        if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
+    if (even || !lobed) return 1;
+    unsigned char *sharp = calloc((size_t)t->azimuths * (t->heights - 1), 1);
+    if (!sharp) return mu_fail(error, "not enough memory for a table of albedos");
+    t->sharp = sharp;
+    mu_rows(t->azimuths, threads, mark, &w);
+    return 1;
+}
+
+void mu_albedo_table_free(mu_albedo_table *t) {
+    free(t->rgb);
+    free(t->sharp);
+    t->rgb = NULL, t->sharp = NULL;
+}
+
+size_t mu_albedo_table_bytes(const mu_albedo_table *t) {
+    return 3 * sizeof(float) * t->heights * t->rows * t->sigmas[0] * t->sigmas[1];
+}
+
+_Bool mu_albedo_table_at(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
+    return t->rgb && interpolate(t, lobe, wo, rgb);
 }

@@ -8,14 +8,20 @@
 #include <string.h>
 
 #include "core/ibl/reads.h"
+#include "core/render/albedo_source.h"
 #include "core/render/albedo_table.h"
 #include "core/render/filtered.h"
 #include "core/render/lobes.h"
 #include "core/render/path.h"
 #include "core/render/surface_rows.h"
 
+/* What an albedo may be off that is integrated at a hit, and calls of its material for it at most. */
+#define ENOUGH 1e-4
+enum { CALLS = 1 << 13 };
+
 typedef struct lit_material {
     mu_lobe_source source;
+    const musurf_slopes *slopes;
     mu_albedo_table albedo;
     mu_ibl_plan plan;
 } lit_material;
@@ -59,8 +65,24 @@ static uint32_t look(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_
     return mu_geometry_intersect_packet(tracer->geometry, rays, (1u << count) - 1, hits);
 }
 
+/* From the table; or of a closure in `scratch`, as a node of the table is made. */
+static void albedo_at(const lit_material *own, mu_shading *shading, const mu_ibl_lobe_f *lobe, void *scratch, float rgb[3]) {
+    if (mu_albedo_table_at(&own->albedo, lobe, shading->wo, rgb)) return;
+    mu_shading_bind(shading, scratch);
+    mu_albedo_bound bound = {shading->type, scratch, own->slopes};
+    const mu_ibl_lobe_d wide = {.sigma = {(double)lobe->sigma[0], (double)lobe->sigma[1]},
+                                .turn = {(double)lobe->turn[0], (double)lobe->turn[1]},
+                                .mean = {(double)lobe->mean[0], (double)lobe->mean[1]}};
+    const mu_even_source source = mu_albedo_source(&bound, &wide);
+    mu_even_effort effort = {ENOUGH, CALLS, 0};
+    mu_even_mean mean = {{0, 0, 0}, 0};
+    if (shading->lobes)
+        mean = mu_even_light(&source, (const double[3]){(double)shading->wo[0], (double)shading->wo[1], (double)shading->wo[2]}, &effort);
+    for (int c = 0; c < 3; c++) rgb[c] = (float)mean.rgb[c];
+}
+
 void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample,
-                        mu_radiance *out) {
+                        void *scratch, mu_radiance *out) {
     const mu_image_light *light = tracer->image_light;
     mu_ray rays[MU_PACKET] = {{.near = 0}};
     mu_hit hits[MU_PACKET];
@@ -79,7 +101,7 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
         const _Bool bright = arrive(tracer, light, &rays[i], &hits[i], &shading, &lobe);
         memcpy(out[i].normal, &shading.frame.n, sizeof out[i].normal);
         if (!bright) continue;
-        mu_albedo_table_at(&light->materials[hits[i].material].albedo, &lobe, shading.wo, out[i].albedo);
+        albedo_at(&light->materials[hits[i].material], &shading, &lobe, scratch, out[i].albedo);
         if (!light->means) lobe.mean[0] = lobe.mean[1] = 0;
         const size_t n = mu_ibl_reads_of_phase(&light->materials[hits[i].material].plan, sample, &lobe, shading.wo, reads);
         out[i].reads = (uint32_t)n;
@@ -169,6 +191,8 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
     _Bool good = survey_picture(&s, threads, error);
     for (uint32_t m = 0; good && m < light->count; m++) {
         lit_material *own = &light->materials[m];
+        const musurf_material_type *type = scene->materials[m].material.type;
+        own->slopes = type->extension ? type->extension(MUSURF_SLOPES_ID) : NULL;
         good = mu_albedo_table_make(&own->albedo, &scene->materials[m].material, own->source.map, &own->source.moments,
                                     &s.low[m], &s.high[m], threads, error);
     }

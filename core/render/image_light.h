@@ -6,7 +6,7 @@
  * Radiance at a first hit is the directional albedo of its material times the reads of a technique (core/ibl/reads.h). The
  * lobe comes from the plugin: the moments of its slopes (musurf_slopes.h) under the M of the hit. All that is needed is made
  * once, before the first sample: the filtered environment, and of each material a table of albedos over what the camera's
- * rays meet.
+ * rays meet. Where the table is not near enough, or there can be none, the albedo is integrated at the hit.
  */
 #ifndef MU_IMAGE_LIGHT_H
 #define MU_IMAGE_LIGHT_H
@@ -28,6 +28,6 @@ void mu_image_light_free(mu_image_light *image_light);
 
 /* [any] As mu_integrator_row, of tracer->image_light. */
 void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
-                        uint32_t sample, mu_radiance *out);
+                        uint32_t sample, void *scratch, mu_radiance *out);
 
 #endif

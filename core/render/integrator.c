@@ -16,7 +16,7 @@ size_t mu_integrator_scratch(const mu_scene *scene) {
 void mu_integrator_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count,
                        uint32_t sample, void *scratch, mu_radiance *out) {
     if (tracer->image_light) {
-        mu_image_light_row(tracer, seed, x, y, count, sample, out);
+        mu_image_light_row(tracer, seed, x, y, count, sample, scratch, out);
         return;
     }
     const mu_path_options options = {.strategy =

@@ -144,11 +144,15 @@ void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *
     if (material->normal_map) mu_normal_turn(shading, material, beam, wo, turned);
 }
 
-void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
-                      const mu_beam *beam, void *closure) {
-    mu_shading_place(shading, scene, hit, wo, beam);
+void mu_shading_bind(mu_shading *shading, void *closure) {
     shading->closure = closure;
     shading->lobes = shading->map ? shading->map->setup(shading->compiled, shading->wo, shading->slots + MU_SLOT_TRANSFORM,
                                                         shading->pushed, 0, closure)
                                   : shading->type->setup(shading->compiled, shading->wo, shading->pushed, 0, closure);
+}
+
+void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo,
+                      const mu_beam *beam, void *closure) {
+    mu_shading_place(shading, scene, hit, wo, beam);
+    mu_shading_bind(shading, closure);
 }

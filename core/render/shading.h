@@ -39,6 +39,9 @@ void mu_shading_begin(mu_shading *shading, const mu_scene *scene, const mu_hit *
 /* The same without the closure: `closure` and `lobes` are not set. Not to be moved. */
 void mu_shading_place(mu_shading *shading, const mu_scene *scene, const mu_hit *hit, mu_vec3 wo, const mu_beam *beam);
 
+/* And that alone, of a place. */
+void mu_shading_bind(mu_shading *shading, void *closure);
+
 /* n, a unit vector, and a tangent as near to t as can be. */
 mu_frame mu_shading_frame(mu_vec3 n, mu_vec3 t);
 

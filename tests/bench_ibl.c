@@ -59,8 +59,7 @@ static double now(void) {
 static void shade(const void *context, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample, void *scratch,
                   mu_radiance *out) {
     bench *b = (bench *)context;
-    (void)scratch;
-    mu_image_light_row(&b->tracer, seed, x, y, count, sample, out);
+    mu_image_light_row(&b->tracer, seed, x, y, count, sample, scratch, out);
     for (uint32_t i = 0; i < count; i++) b->reads += out[i].reads, b->hits += out[i].hit;
 }
 
@@ -89,7 +88,7 @@ static void only_rays(const void *context, uint64_t seed, uint32_t x, uint32_t y
 static double frame(bench *b, mu_film *film, mu_sample_function sample) {
     mu_error error = {.text = ""};
     const mu_film_settings *settings = &b->tracer.scene->film;
-    const mu_render_plan plan = {.sample = sample, .context = b, .scratch = 64, .seed = 1, .threads = 1, .samples = b->samples};
+    const mu_render_plan plan = {.sample = sample, .context = b, .scratch = mu_integrator_scratch(b->tracer.scene), .seed = 1, .threads = 1, .samples = b->samples};
     const mu_render_watch watch = {.report = NULL};
     b->reads = b->hits = 0;
     mu_film_free(film);

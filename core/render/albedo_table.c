@@ -10,7 +10,8 @@
  * have in common roots are taken. A material that is the same mirrored at the lobe's axes, which is tried out, is asked for a quarter turn; a
  * tilt and a histogram are not: more nodes, and creases where what masks the view begins. So each node is told from others twice as far
  * apart: of a smooth table that is off by 16 times what lies between nodes is, at a crease twice. Where it is off by more than TOLD the
- * middle of the cells around is asked, and those that are off by more than NEAR are no part of the table.
+ * middle of the cells around is asked, and those that are off by more than NEAR are no part of the table; where by more than CREASED, none
+ * of them are: the middle may be near by chance.
  */
 #include "core/render/albedo_table.h"
 
@@ -32,6 +33,7 @@ enum { SIGMAS_MOST = 16 };
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 12 };
 #define TOLD 6e-4f
 #define NEAR 4e-4f
+#define CREASED 3e-3f
 /* How far beyond the outermost nodes of a sigma a hit may be, in nodes. */
 #define BEYOND 0.02f
 /* The view of the node on the horizon. */
@@ -324,8 +326,8 @@ static void mark(void *context, uint32_t azimuth) {
         float off = 0, v[3], rgb[3], distance = 0;
         double wo[3];
         for (uint32_t k = 0; k < 4; k++) off = fmaxf(off, told_off(t, (azimuth + k / 2) % t->azimuths, i + k % 2));
-        sharp[i] = 0;
-        if (off <= TOLD) continue;
+        sharp[i] = off > CREASED && off < INFINITY;
+        if (off <= TOLD || sharp[i]) continue;
         view_of(s.sigma, (place){((float)i + 0.5f) / (float)(t->heights - 1), ((float)azimuth + 0.5f) / (float)t->azimuths}, v);
         if (!seat_look(w, &s, v, wo)) continue;
         (void)interpolate(t, w->lobe, (const float[3]){(float)wo[0], (float)wo[1], (float)wo[2]}, rgb);
@@ -357,8 +359,8 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
         even = is_even(&w);
         if (map && lobed && !even) return 1;
         if (varies) t->azimuths = even ? 64 : 32; /* else noise, taken as if M turned it */
-        else t->azimuths = even ? 128 : w.drawn ? 48 : 192; /* what is noise needs samples, and is smooth */
-        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 96;
+        else t->azimuths = even ? 128 : w.drawn ? 48 : 128; /* what is noise needs samples, and is smooth */
+        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 64;
         t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
     }
     const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;

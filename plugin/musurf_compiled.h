@@ -21,16 +21,17 @@ struct musurf_material {
     void *context;
     const mu_surface_f *in_float; /* NULL where shading is in double */
     const mu_surface_d *in_double;
-    float inner[4]; /* of parsed.inner */
+    float inner[4];        /* of parsed.inner */
     mu_ibl_slopes moments; /* before M */
     int has_moments;
     uint32_t lobes; /* that setup answers */
     uint32_t transmits;
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
-    float unsure; /* mu_surface_tables_unsure */
+    float unsure, open; /* mu_surface_tables_unsure, mu_surface_tables_open */
     char name
-        [96]; /* the longest: "beckmann (std is beckmann here), general transform, double precision, albedo within 0.012" */
+        [160]; /* the longest: "beckmann (std is beckmann here), general transform, double precision, albedo within 0.012,
+                     * integrated for 12 % of directions" */
     char left_out[160];
     char sampler[128];
 };

@@ -7,10 +7,12 @@
  *     bench_compensation random SEED SECONDS
  *
  * The latter tries what comes: any distribution, M turned, mirrored, of any condition to 1e8, and scale, level or tilted.
- * A row for each distribution and case: what is asked of it (1 % of all light), the largest |E + what the lobe returns - 1|
- * over views from 1 to 89.9 degrees, what tables say that they are off by (mu_surface_tables_unsure), and milliseconds. E is
+ * A row for each distribution and case: the largest |E + what the lobe returns - 1| over views from 1 to 89.9 degrees, what tables say
+ * that they are off by (mu_surface_tables_unsure), the share of either side that they leave open and what an albedo takes there, and
+ * milliseconds to make them. E is
  * the quadrature of polar_albedo.c, which knows no table, its panels equal to within 1e-4; of histograms, which share their quadrature with
- * tables, it is the mean weight of visible normals instead, and "noise" its largest standard error, which the largest of
+ * tables, and of random materials, whose heavy tails that quadrature loses at grazing views (3 % of E of std under 2e7:1, and says 4e-3),
+ * it is the mean weight of visible normals instead, and "noise" its largest standard error, which the largest of
  * many errors exceeds a few times over. What the lobe returns is the mean of lost cos / (pi A pdf) over its own draws.
  * Fails where the error is above what is promised of a case: 1 %, and what is said of the tables, or what the README says
  * of blurring and of points beyond the promised roughnesses; three times the noise allowed. Random seeds are fixed.
@@ -139,23 +141,27 @@ static void direction(double z, double phi, float w[3]) {
     w[0] = (float)(r * cos(phi)), w[1] = (float)(r * sin(phi)), w[2] = (float)z;
 }
 
-/* E, and its standard error, of a closure that scatters singly. */
-static double single_albedo(const struct family *f, mu_closure_f *c, int blurred, uniform *random,
-                            double *error) {
-    *error = 0;
-    if (f->ndf != MU_TABULATED || blurred)
-        return polar_albedo(c, f->ndf == MU_GTR && !blurred ? f->alpha : 1, 1e-4, error);
+/* E by the mean weight of visible normals, at most 1 each, and its standard error. */
+static double mean_weight(mu_closure_f *c, int samples, uniform *random, double *error) {
     double sum = 0, squares = 0;
     c->importance = 1;
-    for (int i = 0; i < SAMPLES; i++) {
+    for (int i = 0; i < samples; i++) {
         const float u[3] = {uniform_float(random), uniform_float(random), uniform_float(random)};
         mu_sample_f s;
         mu_sample_wi_f(c, u, &s);
         const double weight = s.rejected ? 0 : (double)s.weight[0];
-        sum += weight / SAMPLES, squares += weight * weight / SAMPLES;
+        sum += weight / samples, squares += weight * weight / samples;
     }
-    *error = sqrt(fmax(squares - sum * sum, 0) / SAMPLES);
+    *error = sqrt(fmax(squares - sum * sum, 0) / samples);
     return sum;
+}
+
+/* E, and its standard error, of a closure that scatters singly. */
+static double single_albedo(const struct family *f, mu_closure_f *c, int blurred, int drawn, uniform *random,
+                            double *error) {
+    *error = 0;
+    if (drawn || (f->ndf == MU_TABULATED && !blurred)) return mean_weight(c, SAMPLES, random, error);
+    return polar_albedo(c, f->ndf == MU_GTR && !blurred ? f->alpha : 1, 1e-4, error);
 }
 
 /* An M that makes slopes of roughness `width` as rough along its axes as the case says. */
@@ -167,8 +173,8 @@ static void random_map(uniform *random, double width, const struct kind *of, flo
     m[3] = (float)(b * cos(s));
 }
 
-/* 1 if the case is what it should be. */
-static int run(const struct family *f, const struct kind *k, const double *histogram) {
+/* 1 if the case is what it should be; `drawn`: E by mean weights, again by many where it seems to be off. */
+static int run(const struct family *f, const struct kind *k, const double *histogram, int drawn) {
     mu_definition d = define(f, k, histogram), once = d;
     mu_complaint why;
     d.multiple = MU_COMPENSATED;
@@ -182,6 +188,7 @@ static int run(const struct family *f, const struct kind *k, const double *histo
     const mu_surface_f *s = make(&d, &memory[0]);
     const double ms = now() - start, width = mu_slope_width(&d);
     const mu_surface_f *single = make(&once, &memory[1]);
+    const mu_albedo_set *set = mu_surface_tables_f(s);
     uniform random = {20261126u};
     double worst = 0, noise = 0, back = 0, sides[2] = {0, 0};
     char where[160] = "";
@@ -201,12 +208,14 @@ static int run(const struct family *f, const struct kind *k, const double *histo
         if (k->blurs || varies(k))
             back = returned(&c, DRAWS);
         else if (i <= k->glass)
-            sides[below] = returned(&c, MANY);
+            sides[below] = returned(&c, set->open && set->level[0].side[below].open > 0.02f ? DRAWS : MANY);
         if (!k->blurs && !varies(k)) back = sides[below];
         double error;
         const int widened = simple.kernel != before;
-        const double E = single_albedo(f, &simple, widened, &random, &error);
-        const double off = fabs(E + (double)c.lobe.lost * back - 1);
+        const double E = single_albedo(f, &simple, widened, drawn, &random, &error);
+        double off = fabs(E + (double)c.lobe.lost * back - 1);
+        if (drawn && off > 0.005)
+            off = fabs(mean_weight(&simple, 32 * SAMPLES, &random, &error) + (double)c.lobe.lost * back - 1);
         noise = fmax(noise, error);
         if (off > worst) {
             worst = off;
@@ -216,9 +225,23 @@ static int run(const struct family *f, const struct kind *k, const double *histo
         }
     }
     const double unsure = (double)mu_surface_tables_unsure_f(s);
+    double open[2] = {0, 0}, microseconds = 0;
+    for (int side = 0; side <= k->glass; side++) open[side] = (double)set->level[0].side[side].open;
+    if (set->open) {
+        mu_lobe l;
+        mu_albedo_set_choose(set, &l);
+        const double begin = now();
+        for (int i = 0; i < 200; i++) {
+            float w[3];
+            direction((i + 0.5) / 200, 2.4 * i, w);
+            mu_albedo_lost_at(&l, i % 2 && k->glass, w);
+        }
+        microseconds = 5 * (now() - begin);
+    }
     const int right = worst <= (k->promised > 0 ? k->promised : 0.01) + unsure + 3 * noise;
-    printf("%s %.4f noise %.4f unsure %.4f %7.0f ms %8zu bytes   at %s\n", right ? "    " : "FAIL", worst,
-           noise, unsure, ms, mu_surface_table_bytes_f(s), where);
+    printf("%s %.4f noise %.4f unsure %.4f open %.4f %.4f %4.0f us %7.0f ms %8zu bytes   at %s\n",
+           right ? "    " : "FAIL", worst, noise, unsure, open[0], open[1], microseconds, ms,
+           mu_surface_table_bytes_f(s), where);
     fflush(stdout);
     free(memory[0]), free(memory[1]);
     return right;
@@ -264,7 +287,7 @@ static int try_random(unsigned seed, double seconds, const double *histogram) {
         const struct family *f =
             &families[(size_t)(uniform_double(&u) * (sizeof families / sizeof families[0]))];
         const struct kind k = random_kind(&u);
-        failed += !run(f, &k, histogram);
+        failed += !run(f, &k, histogram, 1);
     }
     return failed;
 }
@@ -282,6 +305,6 @@ int main(int argc, char **argv) {
     for (size_t f = 0; f < sizeof families / sizeof families[0]; f++)
         for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
             if (asked(families[f].name, names, count, 1) && asked(kinds[k].name, names, count, 0))
-                failed |= !run(&families[f], &kinds[k], histogram);
+                failed |= !run(&families[f], &kinds[k], histogram, 0);
     return failed;
 }

@@ -37,10 +37,11 @@ void mu_albedo_measure(const albedo_source *s, albedo_lengths *out) {
 
 float mu_albedo_lost(const albedo_source *s, const closure *c) {
     if (s->slopes && c->kernel->traits & HAS_JUMPS) {
-        s->effort->facets += ALBEDO_SLOPES / 4; /* a slope, whose density is not sought, takes a quarter of a facet's time */
+        s->effort->facets +=
+            ALBEDO_SLOPES / 4; /* a slope, whose density is not sought, takes a quarter of a facet's time */
         return 1 - mu_albedo_of_slopes(c, s->slopes);
     }
-    return 1 - MU(albedo_integral)(c, s->lengths[is_blurred(s, c)], fmin(s->error / 4, 1e-3), s->effort);
+    return 1 - MU(albedo_integral)(c, s->lengths[is_blurred(s, c)], s->allowed, s->effort);
 }
 
 /* Of what meets two facets or more and leaves, the share that leaves on the upper side, under uniform light from above:

@@ -20,6 +20,8 @@
  * reflection begins where the cosine to that is c: E jumps there, beside a root, or a layer. Then u is folded to be 1/2 there, and beside that a root of what it was.
  * Where the microsurface is not even (tilted, say), E turns by azimuth at the normal itself, and where tails are heavy (slopes
  * of no variance) E has a tip there, r^(2 gamma - 2) of std and gtr: sqrt(S) takes the place of S in interpolation; cells are drawn from uniformly in S nevertheless.
+ * Where cells do not come near enough (E of tilted glass jumps along curves) a patch stays open: E is integrated there while
+ * shading (albedo_open.c), and its values serve to draw directions.
  * The square [0, 1]² is cut into patches, each of them into halves and they into others where E asks for it, and the last into cells:
  * halved along either axis until what is interpolated is as near as wanted, by bilinear interpolation. A microsurface that is level, and isotropic
  * before M, has four equal quadrants, of which one is kept; one that M leaves isotropic knows no u, which is the azimuth then.
@@ -45,6 +47,7 @@ typedef struct albedo_patch {
     uint32_t node, cell; /* its first */
     uint32_t child;      /* the first of two patches that it is halved to; else 0 */
     uint8_t log_u, log_s, axis;
+    uint8_t open; /* its values are not near enough */
 } albedo_patch;
 
 typedef struct mu_albedo_side {
@@ -58,7 +61,8 @@ typedef struct mu_albedo_side {
     int rooted;    /* sqrt(S) takes the place of S */
     int worldly;   /* S is a logarithm of tau */
     float fold;    /* c, where u is folded; else 0 */
-    float unsure;  /* the most that a value was off where halving ended before it was near enough; else 0 */
+    float open;    /* share of the open patches in the average of cos */
+    float unsure;  /* the most that a value was off, of what is not open; or 0 */
 } mu_albedo_side;
 
 typedef struct mu_albedo {
@@ -190,8 +194,6 @@ void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const m
 /* A direction of the lobe. */
 void mu_albedo_draw(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, float u0,
                     float u1, float w[3]);
-/* The cells' shares of what is interpolated, and its average (albedo_lobe.c). */
-void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumulative);
 /* The average over another frame. */
 double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side);
 
@@ -208,9 +210,11 @@ typedef struct albedo_source {
     const float *transform; /* NULL: the surface's */
     float blur;
     double error;                      /* that E may have */
+    double allowed;                    /* of that, to the quadrature */
     int halvings;                      /* of a patch along an axis, at most ALBEDO_HALVINGS */
     const mu_albedo *like;             /* whose n and sqrt it takes; NULL: chosen */
     int trusting;                      /* not every cell is tested */
+    int opens;                         /* patches may stay open */
     const struct albedo_slope *slopes; /* of a histogram */
     const albedo_lengths *lengths[2];  /* of slopes: of its distribution; of what is blurred, GGX */
     albedo_effort *effort;             /* so far */

@@ -2,9 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * albedo_lobe.c: the smooth lobe of albedo.h, lost(w) cos w: how much of it lies in which cell, and directions drawn from it,
- * uniform in u and S within a cell.
+ * uniform in u and S within a cell; and what is lost on average, of open patches by quadratures at some thousand places.
  */
-#include "core/bsdf/albedo.h"
+#include "core/bsdf/albedo_maker.h"
 #include "core/bsdf/real.h"
 
 #if MU_REAL_BITS == 24
@@ -14,6 +14,9 @@ static const double node[4] = {0.06943184420297371, 0.33000947820757187, 0.66999
                                0.93056815579702629};
 static const double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                  0.17392742256872693};
+
+/* Where what is lost is asked to tell its average over open patches. */
+enum { PLACES = 1 << 12 };
 
 void mu_albedo_direction(const mu_albedo *t, const mu_albedo_side *side, const mu_albedo_frame *f,
                          int quadrant, float u, float s, float w[3]) {
@@ -98,14 +101,39 @@ static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
     return sums[0];
 }
 
-/* Sums over a side: the cells' integrals, unless they are NULL. */
+/* Sums over a side: the cells' integrals, unless they are NULL; and in open patches what is lost, at a place for so much of cos. */
 typedef struct summing {
     const mu_albedo *t;
     const mu_albedo_frame *f;
     const mu_albedo_side *side;
     float *cells;
-    double total, cosines;
+    double total, cosines, open;
+    const patch_maker *maker; /* NULL: as interpolated */
+    double every, owed, u, s; /* of these places */
 } summing;
+
+/* A cell, and the integral of cos over it. */
+typedef struct lobe_cell {
+    int quadrant;
+    double u0, u1, s0, s1, cosines;
+} lobe_cell;
+
+/* What is lost over a cell of an open patch beyond what is interpolated there: an estimate without bias, by places of a sequence that
+ * fills the square evenly (Roberts 2018). */
+static double missed(summing *to, const lobe_cell *c) {
+    double sum = 0;
+    for (to->owed += c->cosines; to->owed > to->every; to->owed -= to->every) {
+        float w[3];
+        to->u = fmod(to->u + 0.7548776662466927, 1), to->s = fmod(to->s + 0.5698402909980532, 1);
+        mu_albedo_direction(to->t, to->side, to->f, c->quadrant, (float)(c->u0 + (c->u1 - c->u0) * to->u),
+                            (float)(c->s0 + (c->s1 - c->s0) * to->s), w);
+        const albedo_place at = albedo_locate(to->t, to->side, to->f, w);
+        const double here = (c->u1 - c->u0) * (c->s1 - c->s0) * (double)w[2] / (double)at.stretch;
+        sum += to->every / c->cosines * here *
+               (double)(mu_albedo_toward(to->maker, w) - albedo_lost(to->side, at));
+    }
+    return sum;
+}
 
 /* A patch from u on, `width` of u wide: row `row` of 4 2^log. */
 static void sum_patch(summing *to, int quadrant, const albedo_patch *p, double u, double width, int row,
@@ -122,34 +150,46 @@ static void sum_patch(summing *to, int quadrant, const albedo_patch *p, double u
     const int across = 1 << p->log_u, up = 1 << p->log_s, rows = ALBEDO_ROWS << (log + p->log_s);
     for (int i = 0; i < across * up; i++) {
         const double from = u + width * (i / up) / across, at = (row << p->log_s) + i % up;
-        const double sum =
-            share(to->t, to->f, to->side, quadrant, from, from + width / across,
-                  albedo_s(to->side, at / rows), albedo_s(to->side, (at + 1) / rows), &to->cosines);
-        if (to->cells) to->cells[p->cell + (uint32_t)i] = (float)sum;
-        to->total += sum;
+        lobe_cell c = {quadrant,
+                       from,
+                       from + width / across,
+                       albedo_s(to->side, at / rows),
+                       albedo_s(to->side, (at + 1) / rows),
+                       0};
+        double sum = share(to->t, to->f, to->side, quadrant, c.u0, c.u1, c.s0, c.s1, &c.cosines);
+        if (p->open && to->maker) sum += missed(to, &c);
+        to->total += sum, to->cosines += c.cosines, to->open += p->open ? c.cosines : 0;
+        if (to->cells) to->cells[p->cell + (uint32_t)i] = (float)fmax(sum, 1e-7 * c.cosines);
     }
 }
 
-/* Returns the average. */
-static double integrate_cells(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side,
-                              float *cells, double *total) {
-    summing to = {t, f, side, cells, 0, 0};
-    for (int k = 0; k < t->quadrants * t->columns * ALBEDO_ROWS; k++)
-        sum_patch(&to, k / ALBEDO_ROWS / t->columns, &side->patch[k],
-                  (double)(k / ALBEDO_ROWS % t->columns) / t->columns, 1.0 / t->columns, k % ALBEDO_ROWS, 0);
-    *total = to.total;
-    return to.total / to.cosines;
+static void sum_side(summing *to) {
+    for (int k = 0; k < to->t->quadrants * to->t->columns * ALBEDO_ROWS; k++)
+        sum_patch(to, k / ALBEDO_ROWS / to->t->columns, &to->side->patch[k],
+                  (double)(k / ALBEDO_ROWS % to->t->columns) / to->t->columns, 1.0 / to->t->columns,
+                  k % ALBEDO_ROWS, 0);
 }
 
 double mu_albedo_average(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side) {
-    double total;
-    return integrate_cells(t, f, side, NULL, &total);
+    summing all = {.t = t, .f = f, .side = side};
+    sum_side(&all);
+    return all.total / all.cosines;
 }
 
-void mu_albedo_fill_lobe(const mu_albedo *t, mu_albedo_side *side, float *cumulative) {
-    double total, so_far = 0;
-    side->average = (float)integrate_cells(t, &t->frame, side, cumulative, &total);
+void mu_albedo_fill_lobe(const patch_maker *m, float *cumulative) {
+    mu_albedo_side *const side = m->side;
+    summing all = {.t = m->table, .f = &m->table->frame, .side = side, .cells = cumulative};
+    sum_side(&all);
+    side->open = (float)(all.open / all.cosines);
+    if (all.open > 0) {
+        all.maker = m, all.every = all.open / PLACES;
+        all.total = all.cosines = all.open = 0;
+        sum_side(&all);
+    }
+    side->average = (float)(all.total / all.cosines);
     side->cumulative = cumulative;
+    double total = 0, so_far = 0;
+    for (uint32_t cell = 0; cell < side->cells; cell++) total += (double)cumulative[cell];
     for (uint32_t cell = 0; cell < side->cells; cell++) {
         so_far += (double)cumulative[cell] / total;
         cumulative[cell] = (float)so_far;

@@ -8,6 +8,9 @@
 
 #include "core/bsdf/albedo.h"
 
+/* What is lost at least: the lobe exists everywhere. */
+#define ALBEDO_LEAST 1e-7f
+
 /* Values that were evaluated already: each in one of so many places, by where it is. */
 enum { ALBEDO_KNOWN = 1 << 12 };
 typedef struct albedo_known {
@@ -27,15 +30,20 @@ typedef struct patch_maker {
     size_t pending;            /* floats that patches need which are still to grow */
     float turn;                /* +1; -1 from below */
     int quadrant, column, row; /* of the root patch */
+    float place[2];            /* in a cell: where it was asked last */
     int parted;                /* light is transmitted, too */
     albedo_known known[ALBEDO_KNOWN];
 } patch_maker;
 
 /* A closure of the source; 0 if it sees nothing. */
 int mu_albedo_bind(const albedo_source *s, const float w[3], mu_closure_f *c);
+/* 1 - E toward w, which is seen from the side, w.z > 0. */
+float mu_albedo_toward(const patch_maker *m, const float w[3]);
 /* 1 - E at u and S of the root patch, from 0 to 1. */
 float mu_albedo_evaluate(const patch_maker *m, double u, double s);
 /* All patches of the side, and its lobe, by that much work (albedo_effort). */
 void mu_albedo_grow(patch_maker *m, size_t facets);
+/* The cells' shares of the lobe, once patches are grown, and its average (albedo_lobe.c). */
+void mu_albedo_fill_lobe(const patch_maker *m, float *cumulative);
 
 #endif

@@ -8,8 +8,8 @@
  *
  * A kink halves with the cells, all else quarters; what is between nodes is computed to be compared, so that every cell was
  * tested; of tables that stand between others (of blurring, of a grid) that a kink halves is trusted, which saves half of
- * the work. Hardly anything is computed twice. Where halving has to end before (`halvings`, memory, or work), `unsure` says by
- * how much that leaves values off.
+ * the work. Hardly anything is computed twice. Where halving has to end before (`halvings`, memory, or work) the patch stays open; of
+ * tables that may not have such patches, `unsure` says by how much that leaves values off.
  */
 #include "core/bsdf/albedo_maker.h"
 #include "core/bsdf/distribution.h"
@@ -17,9 +17,8 @@
 
 #if MU_REAL_BITS == 24
 
-enum { LEAF = 2, FINEST = ALBEDO_HALVINGS + 1, KNOWN_BITS = 12 };
+enum { LEAF = 2, MOST_PLACES = 3 /* log2 */, FINEST = ALBEDO_HALVINGS + 1, KNOWN_BITS = 12 };
 _Static_assert(ALBEDO_KNOWN == 1 << KNOWN_BITS, "a place for each");
-static const float least = 1e-7f; /* what is lost at least: the lobe exists everywhere */
 static const double edge =
     2e-3; /* how near a fold is asked, in columns, and in S: float tells sides by the square */
 
@@ -27,6 +26,7 @@ static const double edge =
 typedef struct rect {
     int level[2], at[2], log[2];
     float left[2]; /* along either axis: what it is off, as far as is known */
+    int open;      /* and that is too much */
 } rect;
 
 /* S from which on a fold leaves anything on its steeper side, tau = c / sqrt(1 - c²). */
@@ -37,18 +37,22 @@ static double fold_begins(const patch_maker *m) {
     return 1 - pow(rest, 1.0 / (1 << m->side->roots));
 }
 
+float mu_albedo_toward(const patch_maker *m, const float w[3]) {
+    const float at[3] = {m->turn * w[0], m->turn * w[1], m->turn * w[2]};
+    closure c;
+    if (!mu_albedo_bind(m->source, at, &c)) return 1;
+    return fmaxf(mu_albedo_lost(m->source, &c), ALBEDO_LEAST);
+}
+
 float mu_albedo_evaluate(const patch_maker *m, double u, double s) {
     const mu_albedo_side *const side = m->side;
     float w[3];
-    closure c;
     double at = albedo_s(side, (m->row + s) / ALBEDO_ROWS);
     if (side->fold > 0) u = fmin(fmax(u, edge), 1 - edge); /* on its own side of the fold */
     if (side->fold > 0 && m->column == 0) at = fmax(at, fold_begins(m) + edge / 10);
     mu_albedo_direction(m->table, side, &m->table->frame, m->quadrant,
                         (float)((m->column + u) / m->table->columns), (float)at, w);
-    for (int k = 0; k < 3; k++) w[k] *= m->turn;
-    if (!mu_albedo_bind(m->source, w, &c)) return 1;
-    return fmaxf(mu_albedo_lost(m->source, &c), least);
+    return mu_albedo_toward(m, w);
 }
 
 /* The value at j, i of 2^log each of the root patch. */
@@ -171,7 +175,8 @@ static int refine(patch_maker *m, rect *r, size_t facets) {
         if (source->trusting && left[axis] <= wanted) done[axis] = 1;
     }
     if (split >= 0 && has_room(m, r, 2)) return split;
-    if (fmaxf(left[0], left[1]) > wanted) m->side->unsure = fmaxf(m->side->unsure, left[0] + left[1]);
+    r->open = fmaxf(left[0], left[1]) > wanted;
+    if (r->open && !source->opens) m->side->unsure = fmaxf(m->side->unsure, left[0] + left[1]);
     return -1;
 }
 
@@ -180,17 +185,40 @@ static void store(patch_maker *m, albedo_patch *p, const rect *r) {
     *p = (albedo_patch){.node = (uint32_t)m->nodes,
                         .cell = m->side->cells,
                         .log_u = (uint8_t)r->log[0],
-                        .log_s = (uint8_t)r->log[1]};
+                        .log_s = (uint8_t)r->log[1],
+                        .open = (uint8_t)(r->open && m->source->opens)};
     for (int j = 0; j <= across; j++)
         for (int i = 0; i <= up; i++) m->values[m->nodes++] = at(m, r, j, i, -1, 0);
     m->side->cells += (uint32_t)(across * up);
+}
+
+/* Is a patch near enough at other places of its cells, too? What was looked at before lies on a lattice, where an edge may cut a
+ * corner, or be midway by chance. More of them the fewer times it was halved, of a sequence that fills the square evenly
+ * (Roberts 2018). */
+static int holds(patch_maker *m, const albedo_patch *p, const rect *r) {
+    const int across = 1 << p->log_u, up = 1 << p->log_s, halved = r->level[0] + r->level[1],
+              places = halved < MOST_PLACES ? across * up << (MOST_PLACES - halved) : across * up;
+    float off = 0;
+    for (int k = 0; k < places; k++) {
+        const float x = m->place[0] = fmodf(m->place[0] + 0.75487767f, 1),
+                    y = m->place[1] = fmodf(m->place[1] + 0.56984029f, 1);
+        const int cell = k % (across * up), j = cell / up, i = cell % up;
+        const float *const v = m->values + p->node + j * (up + 1) + i, *const next = v + up + 1,
+                           low = v[0] + y * (v[1] - v[0]), high = next[0] + y * (next[1] - next[0]);
+        const double u = (r->at[0] + (j + (double)x) / across) / (1 << r->level[0]),
+                     s = (r->at[1] + (i + (double)y) / up) / (1 << r->level[1]);
+        off = fmaxf(off, fabsf(mu_albedo_evaluate(m, u, s) - low - x * (high - low)));
+    }
+    return off <= (float)m->source->error * 0.8f;
 }
 
 /* A patch, and what it is halved to, until the work comes to `facets`: the first half may take three quarters of what is left. */
 static void fill(patch_maker *m, uint32_t patch, rect r, size_t facets) {
     const int axis = refine(m, &r, facets);
     if (axis < 0) {
-        store(m, &m->patch[patch], &r);
+        albedo_patch *const p = &m->patch[patch];
+        store(m, p, &r);
+        if (m->source->opens && !m->source->trusting && !p->open) p->open = !holds(m, p, &r);
         return;
     }
     const uint32_t child = m->side->patches;
@@ -211,7 +239,7 @@ void mu_albedo_grow(patch_maker *m, size_t facets) {
     const int roots = m->table->quadrants * m->table->columns * ALBEDO_ROWS;
     /* what is not even turns within a quadrant as it likes, and a look sees nodes alone */
     const int least_log = m->table->quadrants > 1 && !m->source->trusting ? LEAF : 1;
-    const rect whole = {{0, 0}, {0, 0}, {m->table->columns == 1 ? 0 : least_log, least_log}, {0, 0}};
+    const rect whole = {{0, 0}, {0, 0}, {m->table->columns == 1 ? 0 : least_log, least_log}, {0, 0}, 0};
     side->unsure = 0, effort->off = 0;
     side->patch = m->patch, side->patches = (uint32_t)roots, side->cells = 0, m->nodes = 0;
     for (int k = 0; k < roots; k++) {
@@ -225,7 +253,7 @@ void mu_albedo_grow(patch_maker *m, size_t facets) {
     }
     if (effort->off > m->source->error / 2) side->unsure = fmaxf(side->unsure, (float)effort->off);
     side->lost = m->values;
-    mu_albedo_fill_lobe(m->table, side, m->values + m->nodes);
+    mu_albedo_fill_lobe(m, m->values + m->nodes);
 }
 
 #endif

@@ -91,10 +91,15 @@ static size_t grids_bytes(const mu_definition *d) {
     return padded(grid_tables(d) * sizeof(mu_albedo));
 }
 
+static size_t open_bytes(const mu_definition *d) {
+    return padded(sizeof(albedo_open) + (d->ndf == MU_TABULATED ? ALBEDO_SLOPES * sizeof(albedo_slope) : 0));
+}
+
 size_t mu_albedo_set_bytes(const mu_definition *d) {
     const mu_definition single = reduced(d), ggx = blurred(&single);
     const size_t one = MU(mu_surface_bytes)(&single), other = MU(mu_surface_bytes)(&ggx);
-    return values_bytes(d) + patches_bytes(d) + grids_bytes(d) + padded(one > other ? one : other);
+    return values_bytes(d) + patches_bytes(d) + grids_bytes(d) + open_bytes(d) +
+           padded(one > other ? one : other);
 }
 
 /* The least roughness to which blurring raises a surface (mu_blur): asked of it, for only it knows what stands for a histogram. */
@@ -193,28 +198,43 @@ static void make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *tab
     out->unsure = fmaxf(out->unsure, other);
 }
 
+/* Keeps what the tables were made of, if any of them is open somewhere. */
+static void keep_open(const mu_definition *d, mu_albedo_set *out, albedo_open *open,
+                      const albedo_source *source) {
+    int opens = 0;
+    for (int k = 0; k < out->levels; k++)
+        for (int side = 0; side < (d->transmission ? 2 : 1); side++)
+            opens |= out->level[k].side[side].open > 0;
+    out->open = opens ? open : NULL;
+    if (!opens) return;
+    open->source = *source, open->turn[0] = (float)cos(turn_of(d)), open->turn[1] = (float)sin(turn_of(d));
+    open->source.definition = NULL, open->source.effort = NULL,
+    open->source.allowed = d->compensation_error / 2;
+}
+
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     const mu_definition single = reduced(d);
     char *const patches = (char *)out + values_bytes(d), *const grid = patches + patches_bytes(d),
-                *const single_at = grid + grids_bytes(d);
+                *const open_at = grid + grids_bytes(d), *const single_at = open_at + open_bytes(d);
     albedo_room room = {.values = out->values,
                         .patch = (void *)patches,
                         .most = {all_floats(d), all_floats(d) / ALBEDO_PATCH_FLOATS}};
     albedo_effort effort = {0, 0};
     albedo_source source = {.definition = &single,
                             .error = d->compensation_error,
+                            .allowed = fmin(d->compensation_error / 4, 2e-3),
                             .halvings = is_level(d) ? ALBEDO_HALVINGS : UNEVEN_HALVINGS,
+                            .opens = !d->compensation_varies,
                             .effort = &effort,
                             .facets = ALBEDO_FACETS /
                                       (size_t)(d->compensation_blurs || d->compensation_varies ? 4 : 1)};
     source.surface = MU(mu_surface_make)(&single, single_at);
-    albedo_slope slopes[ALBEDO_SLOPES];
-    if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, slopes), source.slopes = slopes;
-    albedo_lengths own, ggx;
-    mu_albedo_measure(&source, &own), source.lengths[0] = &own;
+    albedo_open *const open = (void *)open_at;
+    if (d->ndf == MU_TABULATED) mu_albedo_slopes(source.surface, open->slopes), source.slopes = open->slopes;
+    mu_albedo_measure(&source, &open->lengths[0]), source.lengths[0] = &open->lengths[0];
     if (d->compensation_blurs) {
         source.blur = 1e6f;
-        mu_albedo_measure(&source, &ggx), source.lengths[1] = &ggx;
+        mu_albedo_measure(&source, &open->lengths[1]), source.lengths[1] = &open->lengths[1];
         source.blur = 0;
     }
     mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
@@ -226,18 +246,20 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
         make_grids(&source, out, (void *)grid, single_at, &room);
     else if (out->blurs)
         make_blurs(&source, out, &room);
-    float off = 0;
+    keep_open(d, out, open, &source);
     for (int k = 0; k < out->levels; k++)
-        for (int side = 0; side < (d->transmission ? 2 : 1); side++)
-            off = fmaxf(off, out->level[k].side[side].unsure);
-    if (off > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, off);
+        for (int side = 0; side < (d->transmission ? 2 : 1); side++) {
+            const float off = out->level[k].side[side].unsure;
+            if (off > (float)d->compensation_error) out->unsure = fmaxf(out->unsure, off);
+        }
     for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
-    out->bytes =
-        sizeof *out + room.used[0] * sizeof(float) + room.used[1] * sizeof(albedo_patch) + grids_bytes(d);
+    out->bytes = sizeof *out + room.used[0] * sizeof(float) + room.used[1] * sizeof(albedo_patch) +
+                 grids_bytes(d) + (out->open ? open_bytes(d) : 0);
 }
 
 void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {
     const mu_albedo *t = &set->level[0];
+    out->set = set, out->blur = 0;
     out->count = 1, out->share[0] = 1, out->level[0] = t, out->frame = t->frame;
     for (int side = 0; side < 2; side++) out->average[side] = t->side[side].average;
     out->passes[0] = t->side[0].passes;
@@ -256,6 +278,7 @@ void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const do
     const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0,
                 g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
     const mu_albedo *t = &set->level[1 + k], *next = last ? t + 1 : t;
+    out->set = set, out->blur = blur;
     out->count = g > 0 ? 2 : 1;
     out->level[0] = t, out->share[0] = 1 - g, out->level[1] = next, out->share[1] = g;
     mu_albedo_lay(v, &out->frame);

@@ -28,7 +28,7 @@ enum {
     ALBEDO_GRID_MOST = 1 << 13
 };
 /* Work that refining the tables of a surface may take (albedo_effort): */
-enum { ALBEDO_FACETS = 110000000 };
+enum { ALBEDO_FACETS = 80000000 };
 /* How far a roughness is from one to another, all as log2: linear in A^1.5 / (1 + A^1.5), which follows both limits. */
 float mu_albedo_share(float log_a, float from, float to);
 
@@ -54,11 +54,21 @@ static inline int albedo_grid_node(int i, int j) {
     return i * (i + 1) / 2 + j;
 }
 
+/* What it takes to integrate what tables leave open (albedo_open.c): what they were made of, which keeps no more of M than its
+ * R(-turn) M, of cosine and sine `turn`. */
+typedef struct albedo_open {
+    albedo_source source;
+    albedo_lengths lengths[2];
+    float turn[2];
+    albedo_slope slopes[]; /* of a histogram */
+} albedo_open;
+
 struct mu_albedo_set {
     int blurs;                              /* there are tables for what is blurred */
     int levels;                             /* 1 + blurs */
     float unsure;                           /* of level[0], and of the grids */
     size_t bytes;                           /* that it takes */
+    const albedo_open *open;                /* NULL: no patch is */
     albedo_grid grid, blurred;              /* for an M of the point; else of no tables */
     float log_blur[ALBEDO_BLURS];           /* log2 of the roughness of level[1 ...] */
     float log_average[2][2 * ALBEDO_BLURS]; /* of both sides: of these, and midway to the next */
@@ -85,6 +95,9 @@ static inline const mu_albedo_frame *lobe_frame(const mu_lobe *l, const mu_albed
     return t->quadrants == 1 ? &l->frame : &t->frame;
 }
 
+/* What is lost toward w, on a side, by integration: lobe_lost where a patch is open. */
+float mu_albedo_lost_at(const mu_lobe *l, int side, const float w[3]);
+
 /* The average of a lobe, by integration. */
 static inline double lobe_average(const mu_lobe *l, int side) {
     double sum = 0;
@@ -94,20 +107,32 @@ static inline double lobe_average(const mu_lobe *l, int side) {
     return sum;
 }
 
+/* So many directions are drawn by their cosine alone: within a cell E may be anything, and so might weights be. */
+static const float lobe_even = 0.125f;
+
 /* What is lost toward w, on a side, and the density of lobe_draw, 1/sr. */
 static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], float *density) {
     float lost = 0;
+    int open = 0;
     *density = 0;
     for (int k = 0; k < l->count; k++) {
         const mu_albedo *t = l->level[k];
         const albedo_place at = albedo_locate(t, &t->side[side], lobe_frame(l, t), w);
         lost += l->share[k] * albedo_lost(&t->side[side], at);
         *density += l->share[k] * albedo_density(t, &t->side[side], at);
+        open |= t->side[side].patch[at.patch].open;
     }
-    return lost;
+    *density = (1 - lobe_even) * *density + lobe_even * 0.31830989f * w[2];
+    return open ? mu_albedo_lost_at(l, side, w) : lost;
 }
 
 static inline void lobe_draw(const mu_lobe *l, int side, float u0, float u1, float w[3]) {
+    if (u0 < lobe_even) { /* by the cosine */
+        const float r = sqrtf(u0 / lobe_even), phi = 6.2831853f * u1;
+        w[0] = r * cosf(phi), w[1] = r * sinf(phi), w[2] = sqrtf(fmaxf(1 - u0 / lobe_even, 1e-14f));
+        return;
+    }
+    u0 = (u0 - lobe_even) / (1 - lobe_even);
     int k = 0;
     while (k < l->count - 1 && u0 >= l->share[k]) u0 -= l->share[k++];
     const mu_albedo *t = l->level[k];

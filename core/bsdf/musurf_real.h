@@ -69,6 +69,9 @@ MU_SUFFIX(mu_surface) * MU_SUFFIX(mu_surface_make)(const mu_definition *definiti
 const mu_albedo_set *MU_SUFFIX(mu_surface_tables)(const MU_SUFFIX(mu_surface) * surface);
 /* The most that an albedo in them was found to be off, where refining had to end above compensation_error: else 0. */
 MU_REAL MU_SUFFIX(mu_surface_tables_unsure)(const MU_SUFFIX(mu_surface) * surface);
+/* The share of what leaves a side, by the cosine, for which they have no value that is near enough, of the worse side: there the
+ * albedo is integrated while shading, in 20 to 250 microseconds. */
+MU_REAL MU_SUFFIX(mu_surface_tables_open)(const MU_SUFFIX(mu_surface) * surface);
 size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
 /* What the definition came down to: "ggx", "gtr table", "mirror", ... */
 const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);

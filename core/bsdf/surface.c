@@ -160,17 +160,25 @@ size_t MU(mu_surface_table_bytes)(const surface *s) {
 real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
     *average = 1;
     if (!s->compensated) return 1;
-    const mu_albedo *t = &multiple_of(s)->tables->level[0];
-    const mu_albedo_side *side = &t->side[s->transmission && w[2] < 0];
-    const float up[3] = {(float)w[0], (float)w[1], (float)w[2]}, down[3] = {-up[0], -up[1], -up[2]};
-    *average = 1 - R(side->average);
-    return 1 - R(albedo_lost(side, albedo_locate(t, side, &t->frame, w[2] < 0 ? down : up)));
+    mu_lobe lobe;
+    float density;
+    mu_albedo_set_choose(multiple_of(s)->tables, &lobe);
+    const int side = s->transmission && w[2] < 0;
+    const float turn = w[2] < 0 ? -1.0f : 1.0f,
+                up[3] = {turn * (float)w[0], turn * (float)w[1], turn * (float)w[2]};
+    *average = 1 - R(lobe.average[side]);
+    return 1 - R(lobe_lost(&lobe, side, up, &density));
 }
 const mu_albedo_set *MU(mu_surface_tables)(const surface *s) {
     return s->compensated ? multiple_of(s)->tables : NULL;
 }
 real MU(mu_surface_tables_unsure)(const surface *s) {
     return s->compensated ? R(multiple_of(s)->tables->unsure) : 0;
+}
+real MU(mu_surface_tables_open)(const surface *s) {
+    if (!s->compensated) return 0;
+    const mu_albedo *t = &multiple_of(s)->tables->level[0];
+    return R(s->transmission ? fmaxf(t->side[0].open, t->side[1].open) : t->side[0].open);
 }
 const char *MU(mu_surface_name)(const surface *s) {
     return s->name;

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * albedo_table.c: nodes by even_light.c; cubic between them, which four neighbours tell (Lagrange).
+ * albedo_table.c: nodes by even_light.c, where albedo_place.h has them.
  *
- * Where a surface is smooth, its albedo falls off within a cosine of about the slope roughness s along the view: nodes are
- * even in asinh(root(cosine / s)). Around, roughness along the view rises from the one axis' to the other's within their ratio of a
- * quarter turn at either end: nodes are even in the azimuth of (sqrt(sigma_U) x, sqrt(sigma_V) y), which widens both ends alike.
- * Near the horizon albedos go with the cosine's root, at the pole, of a tilt, with the sine: of half the tangents that both
- * have in common roots are taken. A material that is the same mirrored at the lobe's axes, which is tried out, is asked for a quarter turn; a
+ * A material that is the same mirrored at the lobe's axes, which is tried out, is asked for a quarter turn; a
  * tilt and a histogram are not: more nodes, and creases where what masks the view begins. So each node is told from others twice as far
  * apart: of a smooth table that is off by 16 times what lies between nodes is, at a crease twice. Where it is off by more than TOLD the
  * middle of the cells around is asked, and those that are off by more than NEAR are no part of the table; where by more than CREASED, none
  * of them are: the middle may be near by chance.
  */
-#include "core/render/albedo_table.h"
+#include "core/render/albedo_place.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,25 +19,16 @@
 #include "core/render/albedo_source.h"
 #include "core/render/surface_rows.h"
 
-#define TWO_PI 6.28318530717958647692
-
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.25f
 enum { SIGMAS_MOST = 16 };
 /* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least. */
 #define ENOUGH 1e-4
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 12 };
+/* As above. */
 #define TOLD 6e-4f
 #define NEAR 4e-4f
 #define CREASED 3e-3f
-/* How far beyond the outermost nodes of a sigma a hit may be, in nodes. */
-#define BEYOND 0.02f
-/* The view of the node on the horizon. */
-#define LEAST_COSINE 1e-6f
-/* Roughnesses of which the height of nodes takes notice. */
-#define SMOOTHEST 1e-4f
-#define ROUGHEST  0.5f
-
 typedef struct work {
     const mu_albedo_table *table;
     const mu_material *material;
@@ -54,37 +41,6 @@ typedef struct work {
     size_t most;   /* calls of a node */
     _Bool drawn; /* samples do better than directions */
 } work;
-
-/* A view in the frame of the lobe's axes: by how it is found in the table. */
-typedef struct place {
-    float height, around; /* 0 to 1 */
-} place;
-
-/* Twice the variance of slopes along the view: alpha² of GGX. */
-static float scale_along(const float sigma[2], float x, float y) {
-    const float flat = x * x + y * y, u = sigma[0] * x, v = sigma[1] * y;
-    const float square = flat > 0 ? 2 * (u * u + v * v) / flat : 2 * sigma[0] * sigma[0];
-    return fminf(fmaxf(sqrtf(square), SMOOTHEST), ROUGHEST);
-}
-
-static place place_of(const float sigma[2], float x, float y, float z) {
-    const float inverse = 1 / scale_along(sigma, x, y);
-    const float u = sigma[1] > 0 ? sqrtf(sigma[0]) * x : x, v = sigma[1] > 0 ? sqrtf(sigma[1]) * y : y;
-    const float turns = atan2f(v, u) * (float)(1 / TWO_PI), h = z / (1 + sqrtf(x * x + y * y));
-    return (place){asinhf(sqrtf(fmaxf(h, 0) * inverse)) / asinhf(sqrtf(inverse)), turns < 0 ? turns + 1 : turns};
-}
-
-/* And back, to a unit vector. */
-static void view_of(const float sigma[2], place at, float w[3]) {
-    const double angle = TWO_PI * (double)at.around;
-    double x = cos(angle), y = sin(angle);
-    if (sigma[1] > 0) x /= sqrt((double)sigma[0]), y /= sqrt((double)sigma[1]);
-    const double scale = (double)scale_along(sigma, (float)x, (float)y);
-    const double root = sinh((double)at.height * asinh(sqrt(1 / scale))), h = scale * root * root;
-    const double z = fmin(fmax(2 * h / (1 + h * h), (double)LEAST_COSINE), 1);
-    const double flat = sqrt((1 - z) * (1 + z)) / hypot(x, y);
-    w[0] = (float)(flat * x), w[1] = (float)(flat * y), w[2] = (float)z;
-}
 
 /* The M that makes the slopes' standard deviations `sigma` along x and y: M = diag(1 / sigma) root^T, since then M^-T root root^T
  * M^-1 is diag(sigma²); and the lobe under it. */
@@ -147,14 +103,14 @@ static void fill(void *context, uint32_t row) {
     float *rgb = t->rgb + (size_t)3 * row * t->heights;
     seat s;
     const _Bool made = seat_make(w, first, second, &s);
-    mu_even_effort effort = {w->enough, w->most, 0};
+    const mu_even_effort effort = {w->enough, w->most};
     if (w->drawn) s.source.lobe = NULL;
     for (uint32_t i = 0; i < t->heights; i++, rgb += 3) {
         float v[3];
         double wo[3];
         rgb[0] = rgb[1] = rgb[2] = made ? 0 : NAN;
         if (!made) continue;
-        view_of(s.sigma, (place){(float)i / (float)(t->heights - 1), (float)azimuth / (float)t->azimuths}, v);
+        mu_albedo_view_of(s.sigma, (mu_albedo_place){(float)i / (float)(t->heights - 1), (float)azimuth / (float)t->azimuths}, v);
         if (!seat_look(w, &s, v, wo)) continue;
         const mu_even_mean mean = mu_even_light(&s.source, wo, &effort);
         for (int c = 0; c < 3; c++) rgb[c] = (float)mean.rgb[c];
@@ -195,7 +151,7 @@ static _Bool is_even(const work *w) {
     for (int i = 0; even && i < VIEWS * LIGHTS; i++) {
         float v[3];
         double wo[3], u[2], wi[3];
-        view_of(s.sigma, (place){(float)(i / LIGHTS + 1) / (VIEWS + 1), 0.07f + (float)(i / LIGHTS) * 0.3f}, v);
+        mu_albedo_view_of(s.sigma, (mu_albedo_place){(float)(i / LIGHTS + 1) / (VIEWS + 1), 0.07f + (float)(i / LIGHTS) * 0.3f}, v);
         if (!seat_look(w, &s, v, wo)) continue;
         mu_ibl_even directions;
         mu_ibl_even_make(&s.lobe, wo, &directions);
@@ -210,87 +166,28 @@ static _Bool is_even(const work *w) {
     return even;
 }
 
-/* Is f noise, as a random walk's, so that samples are to be asked? Seen from a place like any other. */
+/* Is f noise, as a random walk's, so that samples are to be asked? Then it is another one beside each direction. */
 static _Bool is_drawn(const work *w) {
+    enum { PAIRS = 34 };
     seat s;
-    mu_even_effort effort = {w->enough, LEAST_CALLS * 4, 0};
     float v[3];
     double wo[3];
+    int unlike = 0;
     if (!seat_make(w, 0, 0, &s)) return 0;
-    view_of(s.sigma, (place){0.6f, 0.1f}, v);
-    if (seat_look(w, &s, v, wo)) (void)mu_even_light(&s.source, wo, &effort);
+    mu_albedo_view_of(s.sigma, (mu_albedo_place){0.6f, 0.1f}, v);
+    if (s.source.lobe && seat_look(w, &s, v, wo)) {
+        mu_ibl_even directions;
+        mu_ibl_even_make(&s.lobe, wo, &directions);
+        for (uint32_t i = 0; i < PAIRS; i++) {
+            double u[2], wi[3], f[2][3] = {{0}};
+            mu_ibl_fibonacci_at(mu_ibl_fibonacci_below(PAIRS), (const double[2]){0, 0}, i, u);
+            for (int k = 0; k < 2; k++, u[0] *= 0.999)
+                if (mu_ibl_even_direction(&directions, u, wi) > 0) s.source.toward(s.source.context, wi, f[k]);
+            unlike += fabs(f[0][0] - f[1][0]) > 0.05 * f[0][0];
+        }
+    }
     seat_free(&s);
-    return effort.drawn;
-}
-
-/* Up to four nodes, from `first` on, and their weights. */
-typedef struct stencil {
-    uint32_t first, count;
-    float weight[4];
-} stencil;
-
-static stencil four(float x) {
-    const float a = x + 1, b = x - 1, c = x - 2; /* from nodes at -1, 0, 1, 2 */
-    return (stencil){0, 4, {-x * b * c / 6, a * b * c / 2, -a * x * c / 2, a * x * b / 6}};
-}
-
-/* At `at` nodes from the first of `count`, of which there are 1 or at least 4. */
-static stencil among(float at, uint32_t count) {
-    if (count == 1) return (stencil){0, 1, {1}};
-    const float inside = fminf(fmaxf(at, 0), (float)(count - 1));
-    const uint32_t node = (uint32_t)inside, first = node < 1 ? 0 : node + 3 > count ? count - 4 : node - 1;
-    stencil s = four(inside - (float)(first + 1));
-    s.first = first;
-    return s;
-}
-
-/* The same where the last node is followed by the first: indices may exceed `count`. */
-static stencil around(float turns, uint32_t count) {
-    if (count == 1) return (stencil){0, 1, {1}};
-    const float at = turns * (float)count;
-    const uint32_t node = (uint32_t)at;
-    stencil s = four(at - (float)node);
-    s.first = node + count - 1;
-    return s;
-}
-
-/* The row that has the azimuth. */
-static uint32_t row_of(const mu_albedo_table *t, uint32_t azimuth) {
-    uint32_t a = azimuth % t->azimuths;
-    if (t->rows == t->azimuths) return a;
-    if (2 * a > t->azimuths) a = t->azimuths - a;
-    return 4 * a > t->azimuths ? t->azimuths / 2 - a : a;
-}
-
-/* False: its cell is no part of the table, or a sigma is beyond the nodes. */
-static _Bool interpolate(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
-    const float *turn = lobe->turn;
-    const place at = place_of(lobe->sigma, turn[0] * wo[0] + turn[1] * wo[1], turn[0] * wo[1] - turn[1] * wo[0], wo[2]);
-    const stencil z = among(at.height * (float)(t->heights - 1), t->heights), phi = around(at.around, t->azimuths);
-    stencil s[2];
-    _Bool inside = 1;
-    for (int k = 0; k < 2; k++) {
-        const float node = t->sigmas[k] > 1 ? (logf(lobe->sigma[k]) - t->least[k]) / t->step[k] : 0;
-        inside = inside && node >= -BEYOND && node <= (float)(t->sigmas[k] - 1) + BEYOND;
-        s[k] = among(node, t->sigmas[k]);
-    }
-    if (t->sharp) {
-        const uint32_t cell = (uint32_t)fmaxf(at.height * (float)(t->heights - 1), 0), azimuth = (uint32_t)(at.around * (float)t->azimuths);
-        inside = !t->sharp[(size_t)(azimuth % t->azimuths) * (t->heights - 1) + (cell < t->heights - 2 ? cell : t->heights - 2)];
-    }
-    rgb[0] = rgb[1] = rgb[2] = 0;
-    for (uint32_t i = 0; i < s[0].count; i++)
-        for (uint32_t j = 0; j < s[1].count; j++)
-            for (uint32_t k = 0; k < phi.count; k++) {
-                const float weight = s[0].weight[i] * s[1].weight[j] * phi.weight[k];
-                const uint32_t row = ((s[0].first + i) * t->sigmas[1] + s[1].first + j) * t->rows +
-                                     row_of(t, phi.first + k);
-                const float *a = t->rgb + (size_t)3 * (row * t->heights + z.first);
-                for (uint32_t l = 0; l < 4; l++)
-                    for (int c = 0; c < 3; c++) rgb[c] += weight * z.weight[l] * a[3 * l + (uint32_t)c];
-            }
-    for (int c = 0; c < 3; c++) rgb[c] = fmaxf(rgb[c], 0);
-    return inside;
+    return unlike > PAIRS / 4;
 }
 
 /* By how much the middle of four values twice as far apart misses the one that is there; and so beside their first. */
@@ -304,36 +201,46 @@ static float missed(const float *v, ptrdiff_t step, const float at[4]) {
     return worst;
 }
 
-/* What a node (of a table without symmetry) is off from what the others say, along both axes; the outermost along views have too few. */
+/* What a node is off from what the others say, along both axes; the outermost along views, around. */
 static float told_off(const mu_albedo_table *t, uint32_t azimuth, uint32_t height) {
     static const float middle[4] = {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
     float row[7 * 3];
-    if (height < 3 || height + 3 >= t->heights) return INFINITY;
     for (uint32_t k = 0; k < 7; k++)
-        memcpy(row + 3 * k, t->rgb + (size_t)3 * ((azimuth + t->azimuths + k - 3) % t->azimuths * t->heights + height), 3 * sizeof *row);
-    return missed(row + 9, 3, middle) + missed(t->rgb + (size_t)3 * (azimuth * t->heights + height), 3, middle);
+        memcpy(row + 3 * k, t->rgb + (size_t)3 * (mu_albedo_row_of(t, azimuth + 3 * t->azimuths + k - 3) * t->heights + height), 3 * sizeof *row);
+    const float off = missed(row + 9, 3, middle);
+    if (height < 3 || height + 3 >= t->heights) return off;
+    return off + missed(t->rgb + (size_t)3 * (mu_albedo_row_of(t, azimuth) * t->heights + height), 3, middle);
+}
+
+/* By how much the table misses what is at a place. */
+static float distance_at(const work *w, const seat *s, mu_albedo_place at) {
+    const mu_even_effort effort = {w->enough, w->most};
+    float v[3], rgb[3], worst = 0;
+    double wo[3];
+    mu_albedo_view_of(s->sigma, at, v);
+    if (!seat_look(w, s, v, wo)) return 0;
+    (void)mu_albedo_interpolate(w->table, w->lobe, (const float[3]){(float)wo[0], (float)wo[1], (float)wo[2]}, rgb);
+    const mu_even_mean mean = mu_even_light(&s->source, wo, &effort);
+    for (int c = 0; c < 3; c++) worst = fmaxf(worst, fabsf((float)mean.rgb[c] - rgb[c]));
+    return worst;
 }
 
 /* [any] The cells of an azimuth that are no part of the table. */
 static void mark(void *context, uint32_t azimuth) {
+    static const float places[3][2] = {{0.5f, 0.5f}, {0.2f, 0.25f}, {0.8f, 0.75f}};
     const work *w = context;
     const mu_albedo_table *t = w->table;
     unsigned char *sharp = t->sharp + (size_t)azimuth * (t->heights - 1);
-    mu_even_effort effort = {w->enough, w->most, 0};
     seat s;
     if (!seat_make(w, 0, 0, &s)) return;
     for (uint32_t i = 0; i + 1 < t->heights; i++) {
-        float off = 0, v[3], rgb[3], distance = 0;
-        double wo[3];
-        for (uint32_t k = 0; k < 4; k++) off = fmaxf(off, told_off(t, (azimuth + k / 2) % t->azimuths, i + k % 2));
-        sharp[i] = off > CREASED && off < INFINITY;
-        if (off <= TOLD || sharp[i]) continue;
-        view_of(s.sigma, (place){((float)i + 0.5f) / (float)(t->heights - 1), ((float)azimuth + 0.5f) / (float)t->azimuths}, v);
-        if (!seat_look(w, &s, v, wo)) continue;
-        (void)interpolate(t, w->lobe, (const float[3]){(float)wo[0], (float)wo[1], (float)wo[2]}, rgb);
-        const mu_even_mean mean = mu_even_light(&s.source, wo, &effort);
-        for (int c = 0; c < 3; c++) distance = fmaxf(distance, fabsf((float)mean.rgb[c] - rgb[c]));
-        sharp[i] = distance > NEAR;
+        const _Bool outermost = i < 3 || i + 4 >= t->heights; /* of nodes that are not told along views */
+        float off = 0;
+        for (uint32_t k = 0; k < 4; k++) off = fmaxf(off, told_off(t, azimuth + k / 2, i + k % 2));
+        sharp[i] = off > CREASED;
+        for (int k = 0; !sharp[i] && k < (outermost ? 3 : off > TOLD); k++)
+            sharp[i] = distance_at(w, &s, (mu_albedo_place){((float)i + places[k][0]) / (float)(t->heights - 1),
+                                                            ((float)azimuth + places[k][1]) / (float)t->azimuths}) > NEAR;
     }
     seat_free(&s);
 }
@@ -370,11 +277,11 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
     for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
         if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
-    if (even || !lobed) return 1;
-    unsigned char *sharp = calloc((size_t)t->azimuths * (t->heights - 1), 1);
+    if (varies || !lobed) return 1;
+    unsigned char *sharp = calloc((size_t)mu_albedo_intervals(t) * (t->heights - 1), 1);
     if (!sharp) return mu_fail(error, "not enough memory for a table of albedos");
     t->sharp = sharp;
-    mu_rows(t->azimuths, threads, mark, &w);
+    mu_rows(mu_albedo_intervals(t), threads, mark, &w);
     return 1;
 }
 
@@ -386,8 +293,4 @@ void mu_albedo_table_free(mu_albedo_table *t) {
 
 size_t mu_albedo_table_bytes(const mu_albedo_table *t) {
     return 3 * sizeof(float) * t->heights * t->rows * t->sigmas[0] * t->sigmas[1];
-}
-
-_Bool mu_albedo_table_at(const mu_albedo_table *t, const mu_ibl_lobe_f *lobe, const float wo[3], float rgb[3]) {
-    return t->rgb && interpolate(t, lobe, wo, rgb);
 }

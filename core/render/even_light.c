@@ -17,8 +17,6 @@
 #include "core/render/philox.h"
 
 enum { FIRST = 55, STEPS = 3, DRAWN = 256, LEAST_BATCHES = 4 };
-/* What directions are off by, over `enough`, from which on f may be noise. */
-#define NOISY 32
 
 static void by_directions(const mu_even_source *s, const mu_ibl_even *even, mu_ibl_fibonacci lattice,
                           const double shift[2], double mean[3]) {
@@ -85,15 +83,11 @@ static mu_even_mean converge_by_directions(const mu_even_source *s, const double
     }
 }
 
-mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], mu_even_effort *effort) {
+mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], const mu_even_effort *effort) {
     mu_even_mean mean = {{0, 0, 0}, 0};
     if (s->known && s->known(s->context, effort->enough, mean.rgb)) return mean;
     if (!s->lobe) return converge_by_samples(s, effort);
-    mean = converge_by_directions(s, wo, effort);
-    if (mean.error <= NOISY * effort->enough) return mean;
-    const mu_even_mean other = converge_by_samples(s, effort);
-    effort->drawn = other.error < mean.error;
-    return effort->drawn ? other : mean;
+    return converge_by_directions(s, wo, effort);
 }
 
 mu_even_mean mu_even_light_shifted(const mu_even_source *s, const double wo[3], size_t batches, size_t each,

@@ -29,9 +29,8 @@ typedef struct mu_even_mean {
 typedef struct mu_even_effort {
     double enough;
     size_t most;
-    _Bool drawn; /* out: samples did better than directions */
 } mu_even_effort;
-mu_even_mean mu_even_light(const mu_even_source *source, const double wo[3], mu_even_effort *effort);
+mu_even_mean mu_even_light(const mu_even_source *source, const double wo[3], const mu_even_effort *effort);
 
 /* By some 2 batches `each` calls, half of them of either kind if both are possible: the better of both. In `batches` lattices, each
  * shifted at random. */

@@ -74,7 +74,7 @@ static void albedo_at(const lit_material *own, mu_shading *shading, const mu_ibl
                                 .turn = {(double)lobe->turn[0], (double)lobe->turn[1]},
                                 .mean = {(double)lobe->mean[0], (double)lobe->mean[1]}};
     const mu_even_source source = mu_albedo_source(&bound, &wide);
-    mu_even_effort effort = {ENOUGH, CALLS, 0};
+    const mu_even_effort effort = {ENOUGH, CALLS};
     mu_even_mean mean = {{0, 0, 0}, 0};
     if (shading->lobes)
         mean = mu_even_light(&source, (const double[3]){(double)shading->wo[0], (double)shading->wo[1], (double)shading->wo[2]}, &effort);

@@ -22,7 +22,7 @@
 /* Ratio of neighbouring sigmas, in ln; and the most nodes for it. */
 #define SIGMA_STEP 0.25f
 enum { SIGMAS_MOST = 16 };
-/* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least. */
+/* What a node may be off, of a table over sigmas twice that; calls of a material for all nodes, and of one at least, or half of that. */
 #define ENOUGH 1e-4
 enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 12 };
 /* As above. */
@@ -271,7 +271,8 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
         t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
     }
     const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;
-    w.most = CALLS / nodes > LEAST_CALLS ? CALLS / nodes : LEAST_CALLS;
+    const size_t least = varies ? LEAST_CALLS / 2 : LEAST_CALLS;
+    w.most = CALLS / nodes > least ? CALLS / nodes : least;
     t->rgb = malloc(mu_albedo_table_bytes(t));
     if (!t->rgb) return mu_fail(error, "not enough memory for a table of albedos");
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);

@@ -20,7 +20,7 @@ static void drawn(void *context, const double u[3], double rgb[3]) {
 }
 
 /* Allowed 2e-4, 49 histograms were off by 3e-4 in the worst of 143 views (the median of them), by 7e-4 at most (cells.c): below what
- * an albedo may be off, 1e-3, and half the price of 1e-4. */
+ * an albedo may be off, 1e-3, and two thirds of the price of 1e-4. */
 static _Bool known(void *context, double enough, double rgb[3]) {
     const mu_albedo_bound *b = context;
     return b->slopes->albedo(b->closure, 2 * enough, rgb) != 0;

@@ -206,7 +206,7 @@ static int run(const struct family *f, const struct kind *k, const double *histo
         const struct mu_kernel_f *const before = simple.kernel;
         if (k->blurs) mu_blur_f(&c, blur), mu_blur_f(&simple, blur);
         if (k->blurs || varies(k))
-            back = returned(&c, DRAWS);
+            back = returned(&c, set->open ? DRAWS / 8 : DRAWS);
         else if (i <= k->glass)
             sides[below] = returned(&c, set->open && set->level[0].side[below].open > 0.02f ? DRAWS : MANY);
         if (!k->blurs && !varies(k)) back = sides[below];

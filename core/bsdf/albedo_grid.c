@@ -77,7 +77,7 @@ void mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *
     const int i = interval(grid, &x), j = interval(grid, &y);
     corner c[3];
     triangle(i, j, mu_albedo_share(x, n[i], n[i + 1]), mu_albedo_share(y, n[j], n[j + 1]), c);
-    out->count = 0, out->passes[0] = 0;
+    out->count = out->open = 0, out->passes[0] = 0;
     for (int k = 0; k < 3; k++) {
         if (!(c[k].share > 0)) continue;
         out->level[out->count] = &grid->table[table_at(c[k].i, c[k].j)];

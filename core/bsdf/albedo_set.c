@@ -133,28 +133,52 @@ typedef struct blur_probes {
     int tilted, sides;
 } blur_probes;
 
-static float probe_blur(const void *context, float x, int probe) {
-    const blur_probes *const p = context;
-    albedo_source source = *p->source;
+/* Its direction; the side is that of its sign. */
+static void blur_direction(const blur_probes *p, float x, int probe, float w[3]) {
     const int k = probe / p->sides, many = ALBEDO_PROBES / p->sides;
     const double height = (k + 0.5) / many, phi = 2 * PI * fmod(k * 0.6180339887498949, 1);
     double at[3] = {cos(phi), sin(phi), p->tilted ? height / sqrt(1 - height * height) : 1 / height - 1};
     if (!p->tilted) {
         double v[4];
         mu_albedo_frame f;
-        blurred_view(source.surface, exp2f(x) * 1.000001f, v);
+        blurred_view(p->source->surface, exp2f(x) * 1.000001f, v);
         mu_albedo_lay(v, &f);
         const double q[2] = {at[0], at[1]};
         for (int i = 0; i < 2; i++) at[i] = (double)f.from[2 * i] * q[0] + (double)f.from[2 * i + 1] * q[1];
     }
     const double length = sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]),
                  sign = probe % p->sides ? -1 : 1;
-    const float w[3] = {(float)(sign * at[0] / length), (float)(sign * at[1] / length),
-                        (float)(sign * at[2] / length)};
+    for (int i = 0; i < 3; i++) w[i] = (float)(sign * at[i] / length);
+}
+
+static float probe_blur(const void *context, float x, int probe) {
+    const blur_probes *const p = context;
+    albedo_source source = *p->source;
+    float w[3];
     closure c;
+    blur_direction(p, x, probe, w);
     source.blur = exp2f(x) * 1.000001f;
     if (!mu_albedo_bind(&source, w, &c)) return 1;
     return mu_albedo_lost(&source, &c);
+}
+
+/* Is what two tables say midway between them off by more than that? */
+static int is_gap(const blur_probes *p, const mu_albedo_set *set, float x, float wanted) {
+    double v[4];
+    mu_lobe lobe;
+    const float blur = exp2f(x) * 1.000001f;
+    int gap = 0;
+    blurred_view(p->source->surface, blur, v);
+    mu_albedo_set_choose_blurred(set, blur, v, &lobe);
+    for (int probe = 0; probe < ALBEDO_PROBES / p->sides * p->sides && !gap; probe++) {
+        float w[3], density;
+        int open;
+        blur_direction(p, x, probe, w);
+        const float turn = w[2] < 0 ? -1.0f : 1.0f, up[3] = {turn * w[0], turn * w[1], turn * w[2]},
+                    told = lobe_told(&lobe, turn < 0, up, &density, &open);
+        gap = !open && fabsf(told - probe_blur(p, x, probe)) > wanted;
+    }
+    return gap;
 }
 
 static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *room) {
@@ -163,6 +187,7 @@ static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *r
     const blur_probes context = {source, tilted, sides};
     const albedo_probes probes = {probe_blur, &context, ALBEDO_PROBES / sides * sides};
     const size_t before = source->effort->facets, may_take = source->facets;
+    const float wanted = 0.7f * (float)source->error;
     source->halvings = BLUR_HALVINGS, source->trusting = 1, source->error *= 0.6;
     const int count = mu_albedo_place_nodes(
         &probes, fminf(fmaxf(least, blurs_from), blurs_to), blurs_to, (float)source->error / 2,
@@ -182,6 +207,9 @@ static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *r
         for (int side = 0; side < sides; side++)
             out->log_average[side][k] = (float)log(lobe_average(&lobe, side));
     }
+    for (int k = 0; k < out->levels - 2 && source->opens; k++)
+        out->gap[k] =
+            (unsigned char)is_gap(&context, out, (out->log_blur[k] + out->log_blur[k + 1]) / 2, wanted);
 }
 
 /* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
@@ -202,6 +230,7 @@ static void make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *tab
 static void keep_open(const mu_definition *d, mu_albedo_set *out, albedo_open *open,
                       const albedo_source *source) {
     int opens = 0;
+    for (int k = 0; k < out->levels - 2; k++) opens |= out->gap[k];
     for (int k = 0; k < out->levels; k++)
         for (int side = 0; side < (d->transmission ? 2 : 1); side++)
             opens |= out->level[k].side[side].open > 0;
@@ -237,6 +266,7 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
         mu_albedo_measure(&source, &open->lengths[1]), source.lengths[1] = &open->lengths[1];
         source.blur = 0;
     }
+    memset(out->gap, 0, sizeof out->gap);
     mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
     out->levels = 1, out->blurs = d->compensation_blurs;
     out->unsure = 0, out->grid = out->blurred = (albedo_grid){.table = NULL};
@@ -259,7 +289,7 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
 
 void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {
     const mu_albedo *t = &set->level[0];
-    out->set = set, out->blur = 0;
+    out->set = set, out->blur = 0, out->open = 0;
     out->count = 1, out->share[0] = 1, out->level[0] = t, out->frame = t->frame;
     for (int side = 0; side < 2; side++) out->average[side] = t->side[side].average;
     out->passes[0] = t->side[0].passes;
@@ -278,7 +308,7 @@ void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const do
     const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0,
                 g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
     const mu_albedo *t = &set->level[1 + k], *next = last ? t + 1 : t;
-    out->set = set, out->blur = blur;
+    out->set = set, out->blur = blur, out->open = g > 0 && set->gap[k];
     out->count = g > 0 ? 2 : 1;
     out->level[0] = t, out->share[0] = 1 - g, out->level[1] = next, out->share[1] = g;
     mu_albedo_lay(v, &out->frame);

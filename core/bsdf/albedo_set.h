@@ -70,6 +70,7 @@ struct mu_albedo_set {
     size_t bytes;                           /* that it takes */
     const albedo_open *open;                /* NULL: no patch is */
     albedo_grid grid, blurred;              /* for an M of the point; else of no tables */
+    unsigned char gap[ALBEDO_BLURS];        /* what lies between level[1 + k] and the next is open */
     float log_blur[ALBEDO_BLURS];           /* log2 of the roughness of level[1 ...] */
     float log_average[2][2 * ALBEDO_BLURS]; /* of both sides: of these, and midway to the next */
     mu_albedo level[1 + ALBEDO_BLURS];
@@ -110,20 +111,26 @@ static inline double lobe_average(const mu_lobe *l, int side) {
 /* So many directions are drawn by their cosine alone: within a cell E may be anything, and so might weights be. */
 static const float lobe_even = 0.125f;
 
-/* What is lost toward w, on a side, and the density of lobe_draw, 1/sr. */
-static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], float *density) {
+/* What is lost toward w, on a side, as tables say it, and the density of lobe_draw, 1/sr; `open`: it is not near enough. */
+static inline float lobe_told(const mu_lobe *l, int side, const float w[3], float *density, int *open) {
     float lost = 0;
-    int open = 0;
-    *density = 0;
+    *density = 0, *open = l->open;
     for (int k = 0; k < l->count; k++) {
         const mu_albedo *t = l->level[k];
         const albedo_place at = albedo_locate(t, &t->side[side], lobe_frame(l, t), w);
         lost += l->share[k] * albedo_lost(&t->side[side], at);
         *density += l->share[k] * albedo_density(t, &t->side[side], at);
-        open |= t->side[side].patch[at.patch].open;
+        *open |= t->side[side].patch[at.patch].open;
     }
     *density = (1 - lobe_even) * *density + lobe_even * 0.31830989f * w[2];
-    return open ? mu_albedo_lost_at(l, side, w) : lost;
+    return lost;
+}
+
+/* And what is lost indeed. */
+static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], float *density) {
+    int open;
+    const float told = lobe_told(l, side, w, density, &open);
+    return open ? mu_albedo_lost_at(l, side, w) : told;
 }
 
 static inline void lobe_draw(const mu_lobe *l, int side, float u0, float u1, float w[3]) {

@@ -253,6 +253,7 @@ typedef struct mu_lobe {
     mu_albedo_frame frame; /* the closure's */
     const mu_albedo_set *set;
     float blur; /* of mu_blur; or 0 */
+    int open;   /* between two tables that are too far apart */
     float average[2], passes[2];
     float lost, density; /* of wo: the lobe's own density of it */
     float repeated[3];   /* what F leaves of light that was reflected twice or more */

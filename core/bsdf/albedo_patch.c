@@ -212,20 +212,25 @@ static int holds(patch_maker *m, const albedo_patch *p, const rect *r) {
     return off <= (float)m->source->error * 0.8f;
 }
 
-/* A patch, and what it is halved to, until the work comes to `facets`: the first half may take three quarters of what is left. */
+/* A patch, and what it is halved to, until the work comes to `facets`: the first half may take three quarters of what is left. One
+ * that does not hold is halved with its cells. */
 static void fill(patch_maker *m, uint32_t patch, rect r, size_t facets) {
-    const int axis = refine(m, &r, facets);
+    int axis = refine(m, &r, facets), finer = 0;
     if (axis < 0) {
         albedo_patch *const p = &m->patch[patch];
         store(m, p, &r);
-        if (m->source->opens && !m->source->trusting && !p->open) p->open = !holds(m, p, &r);
-        return;
+        if (p->open || !m->source->opens || m->source->trusting || holds(m, p, &r)) return;
+        axis = m->table->columns == 1 || r.left[1] >= r.left[0], finer = 1;
+        p->open = m->source->effort->facets >= facets || !has_room(m, &r, 2) ||
+                  r.level[axis] + r.log[axis] >= m->source->halvings;
+        if (p->open) return;
+        m->nodes = p->node, m->side->cells = p->cell;
     }
     const uint32_t child = m->side->patches;
     m->side->patches += 2;
     m->patch[patch] = (albedo_patch){.cell = m->side->cells, .child = child, .axis = (uint8_t)axis};
     const size_t so_far = m->source->effort->facets;
-    r.level[axis]++, r.at[axis] *= 2, r.log[axis]--;
+    r.level[axis]++, r.at[axis] *= 2, r.log[axis] -= !finer;
     m->pending += floats_of(&r);
     fill(m, child, r, facets > so_far ? so_far + (facets - so_far) / 4 * 3 : so_far);
     m->pending -= floats_of(&r);

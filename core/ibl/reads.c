@@ -55,24 +55,31 @@ static inline void along_axis(size_t n, const float wo[3], const float along[2],
     }
 }
 
-static size_t major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_ibl_settings_f *settings, mu_ibl_read *out) {
+static void major_axis(const mu_ibl_lobe_f *lobe, const float wo[3], const mu_ibl_settings_f *settings, mu_ibl_view *out) {
     mu_ibl_axis_f a;
-    float x[MU_IBL_READS_MOST], y[MU_IBL_READS_MOST], z[MU_IBL_READS_MOST];
     const size_t n = settings->samples;
     mu_ibl_axis_make_for_samples_f(lobe, wo, settings, &a);
-    along_axis(n, wo, a.along, a.middle, a.reach, x, y, z);
+    along_axis(n, wo, a.along, a.middle, a.reach, out->x, out->y, out->z);
     const float roughness = smaller(sqrt(a.radius), 1), weight = 1 / (float)n;
-    for (size_t j = 0; j < n; j++) out[j] = (mu_ibl_read){{x[j], y[j], z[j]}, roughness, weight};
-    return n;
+    for (size_t j = 0; j < n; j++) out->roughness[j] = roughness, out->weight[j] = weight;
+    out->count = n;
+}
+
+static size_t listed(const mu_ibl_view *view, mu_ibl_read *out) {
+    for (size_t j = 0; j < view->count; j++)
+        out[j] = (mu_ibl_read){{view->x[j], view->y[j], view->z[j]}, view->roughness[j], view->weight[j]};
+    return view->count;
 }
 
 size_t mu_ibl_reads_of_phase(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                              mu_ibl_read *out) {
+    mu_ibl_view view;
     switch (plan->technique) {
     case MU_IBL_BENT_NORMAL:
         return bent_normal(lobe, wo, out);
     case MU_IBL_MAJOR_AXIS:
-        return major_axis(lobe, wo, &plan->settings, out);
+        major_axis(lobe, wo, &plan->settings, &view);
+        return listed(&view, out);
     case MU_IBL_LOBE:
         return mu_ibl_spread_reads(plan, phase, lobe, wo, out);
     case MU_IBL_FILTERED:
@@ -101,20 +108,39 @@ static void major_axes(const mu_ibl_lobe_f *lobe, size_t views, const float (*wo
     }
 }
 
-void mu_ibl_reads_of_views(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, size_t views, const float (*wo)[MU_IBL_AXES],
-                           mu_ibl_view *out) {
-    if (plan->technique == MU_IBL_MAJOR_AXIS) {
-        major_axes(lobe, views, wo, &plan->settings, out);
-        return;
-    }
+static void one_by_one(const mu_ibl_plan *plan, size_t phase, size_t views, const mu_ibl_lobe_f *lobes, size_t stride,
+                       const float (*wo)[MU_IBL_AXES], mu_ibl_view *out) {
     for (size_t i = 0; i < views; i++) {
+        const float o[3] = {wo[0][i], wo[1][i], wo[2][i]};
         mu_ibl_read each[MU_IBL_READS_MOST];
-        out[i].count = mu_ibl_reads(plan, lobe, (const float[3]){wo[0][i], wo[1][i], wo[2][i]}, each);
+        if (plan->technique == MU_IBL_MAJOR_AXIS) {
+            major_axis(lobes + i * stride, o, &plan->settings, &out[i]);
+            continue;
+        }
+        out[i].count = mu_ibl_reads_of_phase(plan, phase, lobes + i * stride, o, each);
         for (size_t j = 0; j < out[i].count; j++) {
             out[i].x[j] = each[j].direction[0], out[i].y[j] = each[j].direction[1], out[i].z[j] = each[j].direction[2];
             out[i].roughness[j] = each[j].roughness, out[i].weight[j] = each[j].weight;
         }
     }
+}
+
+void mu_ibl_reads_of_views(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, size_t views, const float (*wo)[MU_IBL_AXES],
+                           mu_ibl_view *out) {
+    if (plan->technique == MU_IBL_MAJOR_AXIS)
+        major_axes(lobe, views, wo, &plan->settings, out);
+    else if (plan->technique == MU_IBL_LOBE)
+        mu_ibl_spread_views(plan, 0, views, lobe, 0, wo, out);
+    else
+        one_by_one(plan, 0, views, lobe, 0, wo, out);
+}
+
+void mu_ibl_reads_of_lobes(const mu_ibl_plan *plan, size_t phase, size_t views, const mu_ibl_lobe_f *lobes,
+                           const float (*wo)[MU_IBL_AXES], mu_ibl_view *out) {
+    if (plan->technique == MU_IBL_LOBE)
+        mu_ibl_spread_views(plan, phase, views, lobes, 1, wo, out);
+    else
+        one_by_one(plan, phase, views, lobes, 1, wo, out);
 }
 
 #endif

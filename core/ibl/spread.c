@@ -29,7 +29,6 @@
  */
 #include "core/ibl/spread.h"
 
-#include <stdint.h>
 #include <string.h>
 
 #include "core/ibl/importance.h"
@@ -38,153 +37,210 @@
 
 #if MU_REAL_BITS == 24
 
+#include "core/ibl/row.h"
 #include "core/ibl/visible.h"
 
-#define OVERLAP 0.22f
-#define MOST    1.4f
-#define LEAST   0.7f
-#define WIDE    4
-/* Of a chosen number: where v ends at least and at most; and how far apart reads are that are `width` wide: twice that where they are narrow,
- * while round ones are few but not too few. */
-#define NEAR 1.8f
-#define FAR  2.8f
-static inline float apart(float width) {
-    return smaller(2 * width, 0.35f + 0.5f * width);
+/* Every fourth read is wider; 2, 6 ... from the middle, so that a row that grows keeps its wide ones. */
+enum { WIDE = 4 };
+static inline uint32_t wide_from(size_t phase, size_t count) {
+    return (uint32_t)(phase % MU_IBL_PHASES + MU_IBL_READS_MOST - (count - 1) / 2);
 }
-
-/* The shape beside GGX's is known from v = 0 to END, at so many places per unit. */
-enum { PLACES = 8 };
-#define END ((float)(MU_IBL_TAIL - 1) / PLACES)
 
 double mu_ibl_tail_share(size_t i) {
     const double t = tanh((double)i / PLACES);
     return t * t;
 }
 
-static inline float tail_at(const float *tail, float v) {
-    const float place = smaller(fabs(v), END) * PLACES;
-    const int low = (int)smaller(place, (float)(MU_IBL_TAIL - 2));
-    return tail[low] + (place - (float)low) * (tail[low + 1] - tail[low]);
-}
-
-static inline float arsinh(float x) {
-    return log(x + sqrt(1 + x * x));
-}
-
-/* The row of one lobe: reads in v, and what is left of each at the ends of a chosen number. Rounded up to fours, the last of weight 0. */
-typedef struct row {
-    size_t count, padded;
-    float step, width; /* of reads, in v; and across, in units of a */
-    float v[MU_IBL_READS_MOST], part[MU_IBL_READS_MOST];
-} row;
-
-/* As many as needed: those at the ends come and go with weight 0. */
-static void choose(float reach, float own, float b, row *r) {
-    r->step = larger(apart(own / sqrt(larger(1 - b * b, 1e-6f))), 2 * reach / (MU_IBL_READS_CHOSEN - 1));
-    const float end = reach / r->step + 0.5f;
-    const int each = (int)ceil(larger(end - 1, 0));
-    r->count = (size_t)(2 * each + 1);
-    for (int k = -each; k <= each; k++) r->part[k + each] = k ? smaller(larger(end - fabs((float)k), 0), 1) : 1;
-}
-
-/* Of a lobe whose a is `major` / 2. */
-static void lay(const mu_ibl_plan *plan, size_t phase, float major, float b, float own, row *r) {
-    const float steep = 2 / larger(major, 1e-6f);
-    float end = smaller(arsinh(steep), END);
-    if (plan->tailed) end = smaller(arsinh(steep / tail_at(plan->tail, end)), END);
-    if (plan->settings.samples) {
-        r->count = plan->settings.samples;
-        r->step = 2 * smaller(larger(end, smaller(LEAST * plan->logarithm, END)), MOST * plan->logarithm) / (float)(int)r->count;
-        for (size_t j = 0; j < r->count; j++) r->part[j] = 1;
-    } else {
-        choose(smaller(larger(end, NEAR), FAR), own, b, r);
-    }
-    const float shared = 1 / (float)(int)(r->count > 1 ? plan->phases : 1);
-    const float least = plan->settings.samples ? sqrt(b * shared / (float)(int)r->count) : 0;
-    r->width = larger(own, larger(least, OVERLAP * shared * r->step));
-    r->padded = (r->count + 3) / 4 * 4;
-    for (size_t j = r->count; j < r->padded; j++) r->part[j] = 0;
-    const float first = plan->shift[phase % plan->phases] - 0.5f * (float)((int)r->count - 1);
-    for (size_t j = 0; j < r->padded; j++) r->v[j] = (first + (float)(int)j) * r->step;
-}
-
-/* e^v of |v| below 40, several at a time: 2^k e^f, f within half of ln 2, by Taylor's series up to f^6, to 2e-7. */
-static inline float exponential(float v) {
-    const float t = v * 1.44269504088896341f;
-    const int k = (int)(t + 64.5f) - 64;
-    const float f = (t - (float)k) * 0.69314718055994531f;
-    const float e = 1 + f * (1 + f * (0.5f + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
-    const int32_t bits = (k + 127) * 0x800000;
-    float power;
-    memcpy(&power, &bits, sizeof power);
-    return power * e;
-}
-
 /* Of a lobe that is wide all around half of what is seen is mirrored below the horizon. Its middle is that of the rest: 0 where the mirror's
  * mean is that of the mean micronormal, below an alpha of 0.3; 1 at an alpha of 1, where, of whatever view, it is the normal: half
  * the angle from w, of which sqrt(1 - h) is the sine. */
-static inline float blunt(const mu_ibl_lobe_f *lobe) {
-    const float alpha = 1.41421356237309504880f * lobe->sigma[1];
+static inline float blunt(float sigma) {
+    const float alpha = 1.41421356237309504880f * sigma;
     return smaller(larger((alpha - 0.3f) / 0.7f, 0), 1);
 }
 
-/* `tailed`: a constant, so that GGX does not pay for it. */
-HOT size_t look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3], int tailed,
-                mu_ibl_read *out) {
-    const visible f = visible_of(lobe, wo);
-    const stretched e = stretched_middle(&f);
-    const float b = e.major > 0 ? e.minor / e.major : 1, b2 = b * b, b8 = square(square(b2)), wide = smaller(3 * e.major, 1);
-    const float share = 0.73f + 0.27f * (b8 + wide * (b2 - b8));
+/* What all reads of a view have in common. Floats alone. */
+typedef struct spread {
+    visible f;
     row laid;
-    lay(plan, phase, e.major, b, share * b, &laid);
-    const float width = laid.width;
-    float sine[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], wider[MU_IBL_READS_MOST];
-    /* 2, 6 ... from the middle, so that a row that grows keeps its wide ones */
-    const uint32_t from = (uint32_t)(phase % MU_IBL_PHASES + MU_IBL_READS_MOST - (laid.count - 1) / 2);
-    for (uint32_t j = 0; j < laid.padded; j++) wider[j] = (j + from) % WIDE == 2 ? 12 * square(b2) : 0;
-    for (size_t j = 0; j < laid.padded; j++) {
-        const float grown = exponential(laid.v[j]);
-        sine[j] = 0.5f * (grown - 1 / grown);
-    }
-    for (size_t j = 0; tailed && j < laid.padded; j++) tail[j] = tail_at(plan->tail, laid.v[j]);
-    const float narrow = width / share, along = sqrt(larger(1 - narrow * narrow, 0)); /* what the width leaves */
+    float turn[2]; /* the row's direction on the disk */
+    float along;   /* of the row, what its width leaves */
+    float upper;   /* how high the middle of a chord up the disk is, where that is 1 long */
+    float radius, seen, wider;
+} spread;
+
+/* How many reads there are. `tailed`, `chosen`: constants. */
+HOT int spread_of(const mu_ibl_plan *plan, float shift, const mu_ibl_lobe_f *lobe, const float wo[3], int tailed, int chosen, spread *s) {
+    stretched e;
+    visible_of(lobe, wo, &s->f);
+    stretched_middle(&s->f, &e);
+    const float b = e.ratio, b2 = b * b, b8 = square(square(b2)), wide = smaller(3 * e.major, 1);
+    const float share = 0.73f + 0.27f * (b8 + wide * (b2 - b8));
+    const int count = lay(plan, shift, e.major, b, share * b, tailed, chosen, &s->laid);
+    const float narrow = s->laid.width / share, half = s->f.half;
+    for (int k = 0; k < 2; k++) s->turn[k] = e.turn[k];
+    s->along = sqrt(larger(1 - narrow * narrow, 0));
     /* the middle of a chord up the disk is upper sqrt(1 - x²) high; its mean over what the row does not resolve across, by area: */
     const float mean = 8 / (3 * (float)PI), unresolved = square(e.turn[1]) + square(e.turn[0] * narrow);
-    const float low = (1 - f.half) * (1 - (1 - mean) * unresolved), upper = low + blunt(lobe) * (sqrt(1 - f.half) - low);
-    const float radius = 0.5f * width * e.major * e.normal, seen = f.length * f.half;
+    const float low = (1 - half) * (1 - (1 - mean) * unresolved);
+    s->upper = low + blunt(lobe->sigma[1]) * (sqrt(1 - half) - low);
+    s->radius = 0.5f * s->laid.width * e.major * e.normal, s->seen = s->f.length * half;
+    s->wider = 12 * square(b2);
+    return count;
+}
+
+/* One read, at the slope sinh v, of which e^v is given; its weight without those of the others. */
+HOT void read_at(const spread *s, float grown, float tail, float part, float wider, int tailed, float r[3], float *rough, float *weight) {
+    const visible *f = &s->f;
+    const float sine = 0.5f * (grown - 1 / grown), slope = s->along * sine, moved = 1 + square((tailed ? tail : 1) * slope);
+    const float place = (tailed ? tail : 1) * slope / sqrt(moved);
+    const float p = s->turn[0] * place, free = larger(1 - p * p, 0);
+    const float tall = sqrt(free), q = smaller(s->upper * tall + f->half * s->turn[1] * place, tall);
+    const float lift = sqrt(larger(free - q * q, 0));
+    float m[3], n[3];
+    for (int k = 0; k < 3; k++) m[k] = p * f->x[k] + q * f->y[k] + lift * f->w[k];
+    visible_normal(f, m, n);
+    const float inverse = 1 / dot(n, n), twice = 2 * dot(n, f->wo) * inverse;
+    for (int k = 0; k < 3; k++) r[k] = twice * n[k] - f->wo[k];
+    /* G2 / G1 = sigma(wo) / (sigma(wo) + wo.z Lambda(wi)), sigma = (|w| + w.z) / 2 */
+    const float w[3] = {f->s[0][0] * r[0] + f->s[0][1] * r[1], f->s[1][0] * r[0] + f->s[1][1] * r[1],
+                        r[2] - f->mean[0] * r[0] - f->mean[1] * r[1]};
+    const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
+    *weight = part * s->seen * up / larger((1 + square(sine)) * (s->seen * up + f->wo[2] * hidden), REAL_MIN);
+    const float alpha = s->radius * sqrt(inverse * (tailed ? tail * tail * (1 + slope * slope) / moved : 1));
+    *rough = smaller(sqrt(alpha + wider * square(alpha) * sqrt(alpha)), 1);
+}
+
+/* e^v of reads: four, and from there on e^(4 step) times that. */
+enum { LANES = 4 };
+
+/* Of one view, four reads at a time. `tailed`, `chosen`: constants, so that what is usual does not pay for what is not. */
+HOT void look(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3], int tailed, int chosen,
+              mu_ibl_view *out) {
+    spread s;
+    const int found = spread_of(plan, plan->shift[phase % plan->phases], lobe, wo, tailed, chosen, &s);
+    const size_t count = (size_t)found;
+    const uint32_t from = wide_from(phase, count);
     float x[3][MU_IBL_READS_MOST], rough[MU_IBL_READS_MOST], weight[MU_IBL_READS_MOST];
-    for (size_t j = 0; j < laid.padded; j++) {
-        const float slope = along * sine[j], moved = 1 + square((tailed ? tail[j] : 1) * slope);
-        const float place = (tailed ? tail[j] : 1) * slope / sqrt(moved);
-        const float p = e.turn[0] * place, free = larger(1 - p * p, 0);
-        const float tall = sqrt(free), q = smaller(upper * tall + f.half * e.turn[1] * place, tall);
-        const float lift = sqrt(larger(free - q * q, 0));
-        float m[3], n[3], r[3];
-        for (int k = 0; k < 3; k++) m[k] = p * f.x[k] + q * f.y[k] + lift * f.w[k];
-        visible_normal(&f, m, n);
-        const float inverse = 1 / dot(n, n), twice = 2 * dot(n, f.wo) * inverse;
-        for (int k = 0; k < 3; k++) x[k][j] = r[k] = twice * n[k] - f.wo[k];
-        /* G2 / G1 = sigma(wo) / (sigma(wo) + wo.z Lambda(wi)), sigma = (|w| + w.z) / 2 */
-        const float w[3] = {f.s[0][0] * r[0] + f.s[0][1] * r[1], f.s[1][0] * r[0] + f.s[1][1] * r[1],
-                            r[2] - f.mean[0] * r[0] - f.mean[1] * r[1]};
-        const float up = larger(r[2], 0), hidden = larger((sqrt(dot(w, w)) + w[2]) / 2 - up, 0);
-        weight[j] = laid.part[j] * seen * up / larger((1 + square(sine[j])) * (seen * up + wo[2] * hidden), REAL_MIN);
-        const float alpha = radius * sqrt(inverse * (tailed ? tail[j] * tail[j] * (1 + slope * slope) / moved : 1));
-        rough[j] = smaller(sqrt(alpha + wider[j] * square(alpha) * sqrt(alpha)), 1);
+    float grown[MU_IBL_READS_MOST], tail[MU_IBL_READS_MOST], part[MU_IBL_READS_MOST], wider[MU_IBL_READS_MOST];
+    float sums[LANES] = {0, 0, 0, 0}; /* one by one would wait for each other */
+    const size_t padded = (count + LANES - 1) / LANES * LANES;
+    const float more = exponential(LANES * s.laid.step), middle = 0.5f * (float)(found - 1);
+    for (int j = 0; j < LANES; j++) grown[j] = exponential((s.laid.first + (float)j) * s.laid.step);
+    for (size_t j = LANES; j < padded; j += LANES)
+        for (size_t k = j; k < j + LANES; k++) grown[k] = grown[k - LANES] * more;
+    for (size_t j = 0; j < padded; j++) {
+        const float away = fabs((float)(int)j - middle), left = chosen && away > 0 ? smaller(larger(s.laid.ends - away, 0), 1) : 1;
+        part[j] = j < count ? left : 0;
     }
-    float sums[4] = {0, 0, 0, 0}; /* one by one would wait for each other */
-    for (size_t j = 0; j < laid.padded; j += 4)
-        for (size_t k = 0; k < 4; k++) sums[k] += weight[j + k];
+    for (uint32_t j = 0; j < padded; j++) wider[j] = (j + from) % WIDE == 2 ? s.wider : 0;
+    for (size_t j = 0; tailed && j < padded; j++) tail[j] = tail_at(plan->tail, (s.laid.first + (float)(int)j) * s.laid.step);
+    for (size_t j = 0; j < padded; j++) {
+        float r[3];
+        read_at(&s, grown[j], tailed ? tail[j] : 1, part[j], wider[j], tailed, r, &rough[j], &weight[j]);
+        for (int k = 0; k < 3; k++) x[k][j] = r[k];
+    }
+    for (size_t j = 0; j < padded; j += LANES)
+        for (size_t k = 0; k < LANES; k++) sums[k] += weight[j + k];
     const float all = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-    const float each = all > 0 ? 1 / all : 1 / (float)(int)laid.count; /* none is above: alike, of an albedo of about 0 */
-    for (size_t j = 0; j < laid.count; j++)
-        out[j] = (mu_ibl_read){{x[0][j], x[1][j], x[2][j]}, rough[j], all > 0 ? each * weight[j] : each};
-    return laid.count;
+    const float each = all > 0 ? 1 / all : 1 / (float)found; /* none is above: alike, of an albedo of about 0 */
+    for (size_t j = 0; j < count; j++) {
+        out->x[j] = x[0][j], out->y[j] = x[1][j], out->z[j] = x[2][j];
+        out->roughness[j] = rough[j], out->weight[j] = all > 0 ? each * weight[j] : each;
+    }
+    out->count = count;
+}
+
+static void look_one(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_view *out) {
+    if (plan->settings.samples)
+        plan->tailed ? look(plan, phase, lobe, wo, 1, 0, out) : look(plan, phase, lobe, wo, 0, 0, out);
+    else
+        plan->tailed ? look(plan, phase, lobe, wo, 1, 1, out) : look(plan, phase, lobe, wo, 0, 1, out);
 }
 
 size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                            mu_ibl_read *out) {
-    return plan->tailed ? look(plan, phase, lobe, wo, 1, out) : look(plan, phase, lobe, wo, 0, out);
+    mu_ibl_view view;
+    look_one(plan, phase, lobe, wo, &view);
+    for (size_t j = 0; j < view.count; j++)
+        out[j] = (mu_ibl_read){{view.x[j], view.y[j], view.z[j]}, view.roughness[j], view.weight[j]};
+    return view.count;
+}
+
+/* Several views, number by number, as those of axis.c: of GGX, and of a given number of reads. */
+enum { VIEWS = 8, NUMBERS = sizeof(spread) / sizeof(float) };
+/* Else gcc leaves a loop, and works out one view after the other. */
+#define ALL_NUMBERS _Pragma("GCC unroll 64")
+_Static_assert((int)NUMBERS <= 64, "all of them");
+HOT void put(const spread *s, size_t i, float (*out)[VIEWS]) {
+    float each[NUMBERS];
+    memcpy(each, s, sizeof *s);
+    ALL_NUMBERS
+    for (size_t k = 0; k < NUMBERS; k++) out[k][i] = each[k];
+}
+HOT void take(const float (*from)[VIEWS], size_t i, spread *s) {
+    float each[NUMBERS];
+    ALL_NUMBERS
+    for (size_t k = 0; k < NUMBERS; k++) each[k] = from[k][i];
+    memcpy(s, each, sizeof *s);
+}
+
+static void look_several(const mu_ibl_plan *plan, size_t phase, size_t views, const float (*lobes)[VIEWS],
+                         const float (*wo)[VIEWS], mu_ibl_view *out) {
+    const mu_ibl_plan own = {.settings = plan->settings, .logarithm = plan->logarithm, .shared = plan->shared};
+    const float shift = plan->shift[phase % plan->phases];
+    const size_t count = plan->settings.samples, from = wide_from(phase, count);
+    float several[NUMBERS][VIEWS], grown[MU_IBL_READS_MOST][VIEWS], more[VIEWS], weight[MU_IBL_READS_MOST][VIEWS];
+    float sums[LANES][VIEWS] = {{0}};
+    for (size_t i = 0; i < VIEWS; i++) {
+        const mu_ibl_lobe_f lobe = {{lobes[0][i], lobes[1][i]}, {lobes[2][i], lobes[3][i]}, {lobes[4][i], lobes[5][i]}};
+        const float o[3] = {wo[0][i], wo[1][i], wo[2][i]};
+        spread s;
+        spread_of(&own, shift, &lobe, o, 0, 0, &s);
+        put(&s, i, several);
+        more[i] = exponential(LANES * s.laid.step);
+        for (int j = 0; j < LANES; j++) grown[j][i] = exponential((s.laid.first + (float)j) * s.laid.step);
+    }
+    for (size_t j = 0; j < count; j++) {
+        const float wider = (j + from) % WIDE == 2;
+        float x[3][VIEWS], rough[VIEWS];
+        for (size_t i = 0; i < VIEWS && j >= LANES; i++) grown[j][i] = grown[j - LANES][i] * more[i];
+        for (size_t i = 0; i < VIEWS; i++) {
+            spread s;
+            float r[3];
+            take(several, i, &s);
+            read_at(&s, grown[j][i], 1, 1, wider * s.wider, 0, r, &rough[i], &weight[j][i]);
+            for (int k = 0; k < 3; k++) x[k][i] = r[k];
+            sums[j % LANES][i] += weight[j][i];
+        }
+        for (size_t i = 0; i < views; i++)
+            out[i].x[j] = x[0][i], out[i].y[j] = x[1][i], out[i].z[j] = x[2][i], out[i].roughness[j] = rough[i];
+    }
+    for (size_t i = 0; i < views; i++) {
+        const float all = (sums[0][i] + sums[1][i]) + (sums[2][i] + sums[3][i]), each = all > 0 ? 1 / all : 1 / (float)(int)count;
+        for (size_t j = 0; j < count; j++) out[i].weight[j] = all > 0 ? each * weight[j][i] : each;
+        out[i].count = count;
+    }
+}
+
+void mu_ibl_spread_views(const mu_ibl_plan *plan, size_t phase, size_t views, const mu_ibl_lobe_f *lobes, size_t stride,
+                         const float (*wo)[MU_IBL_AXES], mu_ibl_view *out) {
+    if (plan->tailed || !plan->settings.samples) {
+        for (size_t i = 0; i < views; i++)
+            look_one(plan, phase, lobes + i * stride, (const float[3]){wo[0][i], wo[1][i], wo[2][i]}, &out[i]);
+        return;
+    }
+    for (size_t first = 0; first < views; first += VIEWS) {
+        const size_t left = views - first < VIEWS ? views - first : VIEWS;
+        float each[6][VIEWS], w[3][VIEWS];
+        for (size_t i = 0; i < VIEWS; i++) { /* more than there are: the first again */
+            const size_t at = first + (i < left ? i : 0);
+            const mu_ibl_lobe_f *l = lobes + at * stride;
+            for (size_t k = 0; k < 2; k++) each[k][i] = l->sigma[k], each[2 + k][i] = l->turn[k], each[4 + k][i] = l->mean[k];
+            for (size_t k = 0; k < 3; k++) w[k][i] = wo[k][at];
+        }
+        look_several(plan, phase, left, each, w, out + first);
+    }
 }
 
 void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *settings, mu_ibl_plan *plan) {
@@ -199,6 +255,7 @@ void mu_ibl_plan_make(mu_ibl_technique technique, const mu_ibl_settings_f *setti
 void mu_ibl_plan_phases(mu_ibl_plan *plan, size_t samples) {
     plan->phases = 1;
     while (2 * plan->phases <= samples && plan->phases < MU_IBL_PHASES) plan->phases *= 2;
+    plan->shared = 1 / (float)(int)(plan->settings.samples == 1 ? 1 : plan->phases);
     for (size_t i = 0; i < plan->phases; i++) {
         float place = 0.5f / (float)plan->phases - 0.5f, digit = 0.5f;
         for (size_t left = i; left; left /= 2, digit /= 2) place += (float)(left % 2) * digit;

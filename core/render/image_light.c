@@ -81,47 +81,75 @@ static void albedo_at(const lit_material *own, mu_shading *shading, const mu_ibl
     for (int c = 0; c < 3; c++) rgb[c] = (float)mean.rgb[c];
 }
 
+/* Hits of a row that are worked out together. */
+typedef struct lit_row {
+    size_t count;
+    uint32_t at[MU_PACKET]; /* in the row */
+    mu_ibl_lobe_f lobe[MU_PACKET];
+    float wo[3][MU_IBL_AXES];
+    mu_shading shading[MU_PACKET];
+} lit_row;
+_Static_assert(MU_PACKET <= (int)MU_IBL_AXES, "a row's views are worked out at once");
+
+static void look_up(const mu_image_light *light, const mu_shading *shading, _Bool bumpy, const mu_ibl_view *reads, mu_radiance *out) {
+    const float last = (float)(light->globe.levels - 1);
+    float sum[4] = {0, 0, 0, 0};
+    mu_ibl_batch batch;
+    batch.count = reads->count;
+    for (size_t k = 0; k < reads->count; k++) {
+        const mu_vec3 world = mu_to_world(&shading->frame, mu_v3(reads->x[k], reads->y[k], reads->z[k]));
+        batch.x[k] = world.x, batch.y[k] = world.y, batch.z[k] = world.z;
+        batch.level[k] = reads->roughness[k] * last, batch.weight[k] = reads->weight[k];
+        if (bumpy) batch.weight[k] *= above(shading, world, reads->roughness[k]);
+    }
+    mu_ibl_globe_sum(&light->globe, &batch, sum);
+    out->reads = (uint32_t)reads->count;
+    for (int c = 0; c < 3; c++) out->rgb[c] = out->albedo[c] * sum[c];
+    if (!(isfinite(sum[0] + sum[1] + sum[2]) && sum[0] >= 0 && sum[1] >= 0 && sum[2] >= 0)) {
+        out->refused = 1;
+        out->rgb[0] = out->rgb[1] = out->rgb[2] = 0;
+    }
+}
+
+/* All of `row`, of one material, which is empty then. */
+static void shade_row(const mu_tracer *tracer, uint32_t material, uint32_t sample, lit_row *row, mu_radiance *out) {
+    const mu_image_light *light = tracer->image_light;
+    const _Bool bumpy = tracer->scene->materials[material].material.normal_map != NULL;
+    mu_ibl_view reads[MU_PACKET];
+    mu_ibl_reads_of_lobes(&light->materials[material].plan, sample, row->count, row->lobe, row->wo, reads);
+    for (size_t i = 0; i < row->count; i++) look_up(light, &row->shading[i], bumpy, &reads[i], &out[row->at[i]]);
+    row->count = 0;
+}
+
 void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint32_t y, uint32_t count, uint32_t sample,
                         void *scratch, mu_radiance *out) {
     const mu_image_light *light = tracer->image_light;
     mu_ray rays[MU_PACKET] = {{.near = 0}};
     mu_hit hits[MU_PACKET];
+    lit_row row;
+    uint32_t material = 0;
+    row.count = 0;
     const uint32_t met = look(tracer, seed, x, y, count, sample, 0, rays, hits);
-    const float last = (float)(light->globe.levels - 1);
     for (uint32_t i = 0; i < count; i++) {
-        mu_shading shading;
-        mu_ibl_lobe_f lobe;
-        mu_ibl_read reads[MU_IBL_READS_MOST];
-        float pdf, sum[4] = {0, 0, 0, 0};
+        float pdf;
         out[i] = (mu_radiance){.rays = 1, .hit = met >> i & 1};
         if (!out[i].hit) {
             mu_lights_escaped(tracer->lights, rays[i].direction, out[i].rgb, &pdf);
             continue;
         }
-        const _Bool bright = arrive(tracer, light, &rays[i], &hits[i], &shading, &lobe);
-        memcpy(out[i].normal, &shading.frame.n, sizeof out[i].normal);
+        if (row.count && hits[i].material != material) shade_row(tracer, material, sample, &row, out);
+        material = hits[i].material;
+        mu_shading *const shading = &row.shading[row.count];
+        mu_ibl_lobe_f *const lobe = &row.lobe[row.count];
+        const _Bool bright = arrive(tracer, light, &rays[i], &hits[i], shading, lobe);
+        memcpy(out[i].normal, &shading->frame.n, sizeof out[i].normal);
         if (!bright) continue;
-        albedo_at(&light->materials[hits[i].material], &shading, &lobe, scratch, out[i].albedo);
-        if (!light->means) lobe.mean[0] = lobe.mean[1] = 0;
-        const size_t n = mu_ibl_reads_of_phase(&light->materials[hits[i].material].plan, sample, &lobe, shading.wo, reads);
-        out[i].reads = (uint32_t)n;
-        const _Bool bumpy = tracer->scene->materials[hits[i].material].material.normal_map != NULL;
-        mu_ibl_batch batch;
-        batch.count = n;
-        for (size_t k = 0; k < n; k++) {
-            const float *d = reads[k].direction;
-            const mu_vec3 world = mu_to_world(&shading.frame, mu_v3(d[0], d[1], d[2]));
-            batch.x[k] = world.x, batch.y[k] = world.y, batch.z[k] = world.z;
-            batch.level[k] = reads[k].roughness * last, batch.weight[k] = reads[k].weight;
-            if (bumpy) batch.weight[k] *= above(&shading, world, reads[k].roughness);
-        }
-        mu_ibl_globe_sum(&light->globe, &batch, sum);
-        for (int c = 0; c < 3; c++) out[i].rgb[c] = out[i].albedo[c] * sum[c];
-        if (!(isfinite(sum[0] + sum[1] + sum[2]) && sum[0] >= 0 && sum[1] >= 0 && sum[2] >= 0)) {
-            out[i].refused = 1;
-            out[i].rgb[0] = out[i].rgb[1] = out[i].rgb[2] = 0;
-        }
+        albedo_at(&light->materials[material], shading, lobe, scratch, out[i].albedo);
+        if (!light->means) lobe->mean[0] = lobe->mean[1] = 0;
+        for (int k = 0; k < 3; k++) row.wo[k][row.count] = shading->wo[k];
+        row.at[row.count++] = i;
     }
+    if (row.count) shade_row(tracer, material, sample, &row, out);
 }
 
 /* ------------------------------------------------------------------------------------------------ preparation */

@@ -29,6 +29,9 @@ enum { CALLS = 1 << 24, LEAST_CALLS = 1 << 12 };
 #define TOLD 6e-4f
 #define NEAR 4e-4f
 #define CREASED 3e-3f
+/* Of what is mirrored, which has no creases, no cell is dropped for what its nodes tell, and none that is near enough still: it is
+ * integrated for every hit. */
+#define NEAR_STILL 8e-4f
 typedef struct work {
     const mu_albedo_table *table;
     const mu_material *material;
@@ -230,6 +233,7 @@ static void mark(void *context, uint32_t azimuth) {
     static const float places[3][2] = {{0.5f, 0.5f}, {0.2f, 0.25f}, {0.8f, 0.75f}};
     const work *w = context;
     const mu_albedo_table *t = w->table;
+    const _Bool level = t->azimuths == 1 || t->rows < t->azimuths;
     unsigned char *sharp = t->sharp + (size_t)azimuth * (t->heights - 1);
     seat s;
     if (!seat_make(w, 0, 0, &s)) return;
@@ -237,10 +241,10 @@ static void mark(void *context, uint32_t azimuth) {
         const _Bool outermost = i < 3 || i + 4 >= t->heights; /* of nodes that are not told along views */
         float off = 0;
         for (uint32_t k = 0; k < 4; k++) off = fmaxf(off, told_off(t, azimuth + k / 2, i + k % 2));
-        sharp[i] = off > CREASED;
-        for (int k = 0; !sharp[i] && k < (outermost ? 3 : off > TOLD); k++)
+        sharp[i] = !level && off > CREASED;
+        for (int k = 0; !sharp[i] && k < (outermost || off > CREASED ? 3 : off > TOLD); k++)
             sharp[i] = distance_at(w, &s, (mu_albedo_place){((float)i + places[k][0]) / (float)(t->heights - 1),
-                                                            ((float)azimuth + places[k][1]) / (float)t->azimuths}) > NEAR;
+                                                            ((float)azimuth + places[k][1]) / (float)t->azimuths}) > (level ? NEAR_STILL : NEAR);
     }
     seat_free(&s);
 }

@@ -99,8 +99,7 @@ static void warn_of_tables(const musurf_host *host, const musurf_material *m) {
     if (m->open > slow) {
         snprintf(text, sizeof text,
                  "tables of compensation leave %.2g %% of all directions open: shading integrates albedos "
-                 "there, at 20 to 250 "
-                 "microseconds each; random_walk is faster",
+                 "there, at 20 to 250 microseconds each; random_walk needs none",
                  100 * (double)m->open);
         host->message(host->context, MUSURF_WARNING, MULTIPLE_SCATTERING, text);
     }

@@ -60,8 +60,7 @@ def run(options, build):
     make.write()
     truth = program.Truth(musurf, folder / "truth", effort.truth)
     grid, environments, noise, found, swept, made = studies.spheres(musurf, bench, truth, effort, folder, progress, env)
-    best = verdicts.improved(found)
-    scenes, whole = studies.whole(musurf, bench, truth, effort, folder, progress, best and best["integrator"], env)
+    scenes, whole = studies.whole(musurf, bench, truth, effort, folder, progress, env)
     noise_means = {key: studies.means(grid, noise[key]) for key in noise}
     result = {"command": options.command, "effort": dataclasses.asdict(effort), "environments": environments, "roughness": grid.rows, "anisotropy": grid.columns, "noise": noise,
               "noise_means": noise_means, "techniques": found, "sweeps": swept, "scenes": scenes, "claims": verdicts.judged(found, scenes), "truths_made": truth.made}

@@ -47,5 +47,5 @@ def one(grid, made, environment, entries, roughness, anisotropy, path, scale):
 
 
 def figure_21(found):
-    """What Figure 21 compares, the paper's form and filtered sampling of 25 reads, and the best here."""
+    """What Figure 21 compares, the paper's form and filtered sampling of 25 reads, and the default here."""
     return [*draw.shown(found)[1:], *(e for e in found if e["integrator"] == {"by": techniques.FILTERED, "reads": efforts.FILTERED})]

@@ -71,8 +71,8 @@ def means(grid, by_environment):
     return {name: float(values[:, which].mean()) if which.any() else None for name, which in (("below", rows < HALF), ("above", rows > HALF))}
 
 
-def whole(musurf, bench, truth, effort, folder, progress, best=None, env=None):
-    """best: an integrator to show with the rest. ([{"name", "environment", "noise", "techniques"}], pictures) of teapot and plate."""
+def whole(musurf, bench, truth, effort, folder, progress, env=None):
+    """([{"name", "environment", "noise", "techniques"}], pictures) of teapot and plate."""
     told, pictures = [], {}
     for name, width, height in effort.scenes:
         given = scene.load(name)
@@ -83,7 +83,7 @@ def whole(musurf, bench, truth, effort, folder, progress, best=None, env=None):
         progress.step(f"{name}: truth", 1.6 * truth_weight(width * height, effort))
         halves, inside = truth.halves(given)
         progress.step(f"{name}: techniques", technique_weight(1, 1, effort))
-        found = [{"integrator": i, "label": techniques.label(i)} for i in techniques.contenders(musurf, best)]
+        found = [{"integrator": i, "label": techniques.label(i)} for i in techniques.contenders(musurf)]
         run = program.by_techniques(bench, [scene.by(given, entry["integrator"]) for entry in found], dataclasses.replace(effort, rounds=MORE * effort.rounds), folder / "work", env)
         mean = (halves[0] + halves[1]) / 2
         costs(found, [run])

@@ -10,6 +10,7 @@ ONE_READ = ("split", "bent-normal")
 BASELINE, SEED, FILTERED = "bent-normal", "major-axis", "filtered"
 SQUARES = (4, 16, 64)  # what filtered sampling takes of the numbers of reads
 PUBLISHED = (*ONE_READ, SEED, FILTERED)  # every other technique is an improvement, or is to be one
+DEFAULT = {"by": "lobe"}  # the improvement to take, with the reads that it has where a scene names none
 
 
 def names(musurf):
@@ -24,13 +25,13 @@ def all_of(musurf, effort):
         reads = {efforts.FILTERED, *(n for n in effort.reads if name != FILTERED or n in SQUARES)}
         chosen = ["auto"] if name not in PUBLISHED and '"auto"' in json.dumps(keys()["reads"]) else []  # as many as each pixel needs
         found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in [*sorted(reads | {efforts.SEED}), *chosen]]
-    return found
+    return [*found, DEFAULT]
 
 
-def contenders(musurf, best=None):
-    """What is compared on whole scenes: every technique with the paper's number of reads, and the best."""
+def contenders(musurf):
+    """What is compared on whole scenes: every technique with the paper's number of reads, and the default."""
     found = [{"by": name} if name in ONE_READ else {"by": name, "reads": efforts.SEED} for name in names(musurf)]
-    return found + [best] if best and best not in found else found
+    return [*found, DEFAULT]
 
 
 def keys():
@@ -45,4 +46,4 @@ def sweeps(effort):
 
 def label(integrator):
     more = "".join(f", {key} {value:g}" for key, value in integrator.items() if key not in ("by", "reads"))
-    return integrator["by"] + (f", N = {integrator['reads']}" if "reads" in integrator else "") + more
+    return integrator["by"] + (", as it is" if integrator == DEFAULT else "") + (f", N = {integrator['reads']}" if "reads" in integrator else "") + more

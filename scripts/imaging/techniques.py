@@ -25,7 +25,8 @@ def all_of(musurf, effort):
         reads = {efforts.FILTERED, *(n for n in effort.reads if name != FILTERED or n in SQUARES)}
         chosen = ["auto"] if name not in PUBLISHED and '"auto"' in json.dumps(keys()["reads"]) else []  # as many as each pixel needs
         found += [{"by": name}] if name in ONE_READ else [{"by": name, "reads": n} for n in [*sorted(reads | {efforts.SEED}), *chosen]]
-    return [*found, DEFAULT]
+        found += [DEFAULT] if name == DEFAULT["by"] else []
+    return found
 
 
 def contenders(musurf):

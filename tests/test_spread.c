@@ -223,6 +223,38 @@ static void test_phases(void **state) {
     }
 }
 
+/* A lobe that is nearly round, seen from above, needs one read where the mirrored view is, as wide as the lobe: whatever sample of a
+ * pixel it is for. One read by order is as wide as the mean of both axes; by need as wide as the sum of few says, 0.73 of the lobe across or
+ * more: of ratios from 0.9 on 0.73 * 0.9 / sqrt(0.9) or more of that one's alpha, and no more than it, to the roundings of a root; but
+ * every fourth sample's is the wide one, 1 + 12 alpha^1.5 times. */
+static void test_nearly_round(void **state) {
+    static const float sigmas[] = {1e-4f, 0.01f, 0.1f, 0.5f}, ratios[] = {0.9f, 0.97f, 0.98f, 0.985f, 0.99f, 0.995f, 0.999f, 0.99999f, 1};
+    enum { SAMPLES = 4 };
+    const mu_ibl_plan single = plan_of(1);
+    const float wo[3] = {0, 0, 1};
+    size_t alone = 0;
+    (void)state;
+    for (size_t p = 1; p <= SAMPLES; p += SAMPLES - 1) {
+        mu_ibl_plan plan = plan_of(0);
+        mu_ibl_plan_phases(&plan, p);
+        for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
+            for (size_t k = 0; k < sizeof ratios / sizeof *ratios; k++)
+                for (size_t phase = 0; phase < p; phase++) {
+                    const mu_ibl_lobe_f lobe = {.sigma = {sigmas[i], ratios[k] * sigmas[i]}, .turn = {1, 0}};
+                    mu_ibl_read one, reads[MU_IBL_READS_MOST];
+                    mu_ibl_reads(&single, &lobe, wo, &one);
+                    const size_t n = mu_ibl_reads_of_phase(&plan, phase, &lobe, wo, reads);
+                    const double middle = (double)reads[n / 2].roughness, alpha = middle * middle / ((double)one.roughness * (double)one.roughness);
+                    const double wide = phase == 2 ? 12 * pow(sqrt(2) * (double)sigmas[i], 1.5) : 0;
+                    if (!(alpha > 0.69 && alpha < 1.00001 * (1 + wide)))
+                        fail_msg("sigma %g, ratio %g, phase %zu: %g", (double)sigmas[i], (double)ratios[k], phase, alpha);
+                    for (int c = 0; n == 1 && c < 3; c++) assert_true(fabsf(reads[0].direction[c] - one.direction[c]) < 1e-6f);
+                    alone += n == 1;
+                }
+    }
+    assert_true(alone > 0);
+}
+
 /* Of GGX of an alpha of 1 every half vector is as likely, so that f cos is the same all around the normal, from whatever view: there a single
  * read looks, to the few roundings of a mirror. */
 static void test_roughest(void **state) {
@@ -283,7 +315,7 @@ static void test_wide_reads(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_roughest), cmocka_unit_test(test_wide_reads), cmocka_unit_test(test_phases), cmocka_unit_test(test_where_the_lobe_is), cmocka_unit_test(test_turns),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_roughest), cmocka_unit_test(test_nearly_round), cmocka_unit_test(test_wide_reads), cmocka_unit_test(test_phases), cmocka_unit_test(test_where_the_lobe_is), cmocka_unit_test(test_turns),
                                        cmocka_unit_test(test_mean_slope), cmocka_unit_test(test_no_jump), cmocka_unit_test(test_tails)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

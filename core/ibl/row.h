@@ -69,9 +69,10 @@ typedef struct row {
     float first, step, width, ends;
 } row;
 
-/* As many as needed, -each to each. */
+/* As many as needed, -each to each. Beyond a step of 2 reach there is one, whatever the step: of a round lobe it would be without end. */
 static inline int choose(float reach, float own, float ratio, row *r) {
-    r->step = larger(apart(own / sqrt(larger(1 - ratio * ratio, 1e-6f))), 2 * reach / (MU_IBL_READS_CHOSEN - 1));
+    const float wanted = apart(own / sqrt(larger(1 - ratio * ratio, 1e-6f)));
+    r->step = smaller(larger(wanted, 2 * reach / (MU_IBL_READS_CHOSEN - 1)), 2 * reach);
     r->ends = reach / r->step + 0.5f;
     return (int)ceil(larger(r->ends - 1, 0));
 }
@@ -82,17 +83,17 @@ HOT int lay(const mu_ibl_plan *plan, float shift, float major, float ratio, floa
     float end = smaller(arsinh(steep), END);
     if (tailed) end = smaller(arsinh(steep / tail_at(plan->tail, end)), END);
     int count = (int)plan->settings.samples;
-    float least = 0, shared = plan->shared;
+    float least = 0, beside = 1; /* how much of the neighbours of the middle one there is: gaps to close, and places between */
     if (chosen) {
         count = 2 * choose(smaller(larger(end, NEAR), FAR), own, ratio, r) + 1;
-        shared = count > 1 ? shared : 1;
+        beside = smaller(r->ends - 1, 1);
     } else {
         r->step = 2 * smaller(larger(end, smaller(LEAST * plan->logarithm, END)), MOST * plan->logarithm) / (float)count;
         r->ends = 0;
-        least = sqrt(ratio * shared / (float)count);
+        least = sqrt(ratio * plan->shared / (float)count);
     }
-    r->width = larger(own, larger(least, OVERLAP * shared * r->step));
-    r->first = shift - 0.5f * (float)(count - 1);
+    r->width = larger(own, larger(least, OVERLAP * beside * plan->shared * r->step));
+    r->first = beside * shift - 0.5f * (float)(count - 1);
     return count;
 }
 

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
- * cells.c: the directional albedo of a slope histogram, F included, block by block of its cells. Not in the papers.
+ * cells.c: the directional albedo of a slope histogram, F included, by halving blocks of its cells. Not in the papers.
  *
- * In slopes p of the histogram's own space, wo.m of the micronormal (mu, 1) is linear, k (core/bsdf/albedo_quadrature.c):
+ * Of the slope p of the histogram's own space let (mu, 1) be the micronormal in the world (core/bsdf/albedo_quadrature.c); wo.(mu, 1)
+ * is linear in p, k(p), and
  *
  *     E(wo) = 1/cos_o  integral of P22(p) max(0, k(p)) F G2 dp.
  *
- * P22 jumps from cell to cell, but F G2 does not: of a block of cells that faces wo it is taken where the block's mass is in
- * the mean, times the mass times k there, which leaves out its curvature alone, however noisy the masses are. The line k = 0 cuts blocks down
- * to cells and these into pieces of even density, of which what faces wo is known (half_plane.c). Blocks are halved along the axis where that
- * makes the most of a difference, until along either there is hardly any; what both make is added then.
+ * P22 jumps from cell to cell, F G2 does not. So a block of cells that faces wo is estimated by its mass, times k and F G2 at its
+ * centre of mass. Mass and k are exact, however noisy the histogram is: only the curvature of F G2 within the block is left out.
+ * Blocks that the line k = 0 crosses are halved down to cells, and these into parts; their density is even, so what of them
+ * faces wo is known (half_plane.c). A block is halved along the axis where that changes its estimate most, until for CALM halvings
+ * in a row neither axis changes it by more than is allowed; both last changes are added to it then.
  */
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/multiple.h"
@@ -19,11 +21,13 @@
 
 #include "core/bsdf/real.h"
 
-/* Halvings at most; of how many in a row there must be hardly any difference; facets, beyond which nothing is halved any more. */
+/* Halvings of a block at most (20 come down to a cell of 1024 by 1024); halvings in a row that must change hardly anything; facets, beyond
+ * which nothing is halved any more. */
 enum { DEEPEST = 40, CALM = 2, FACETS = 1 << 16 };
-/* Of what is allowed: what a block may be off, as blocks are some hundred and off to either side; and be, to be nothing. */
+/* Of what E may be off: the change that is hardly anything (there are some hundred blocks, with errors of either sign); and the
+ * block that is nothing, and is not halved. */
 static const double each = 1.0 / 4, nothing = 1.0 / 32;
-/* Of what is seen, the most that a block may be. */
+/* The largest block that is not halved anyway, as a share of what is seen; and, of one that reflects upwards in part, of `area`. */
 static const double largest = 1.0 / 64, wide = 4;
 
 /* Cells [first, last) of columns and rows; where that is one, [low, high) of it, from 0 to 1. */
@@ -36,16 +40,17 @@ typedef struct looking {
     const closure *c;
     const tabulated_grid *grid;
     double v[4], tilt[2], o[3], k[3];
-    double size[2]; /* of a cell under M, along columns and rows */
-    double allowed;      /* of E times cos_o */
-    double seen, area;   /* all of max(0, k), or cos_o if that is more: G2 is no more than cos_o / seen; what of it may be off */
+    double size[2];    /* of a cell under M, along columns and rows */
+    double allowed;    /* error of E times cos_o */
+    double seen, area; /* sigma(wo), or cos_o if that is more; and the error of it that leaves E what is allowed: G2 <= cos_o / seen */
     size_t facets;
 } looking;
 
-/* What it comes to, times cos_o. */
+/* The estimate of a block, times cos_o. */
 typedef struct part {
-    double rgb[3], mass, facing; /* mass times max(0, k) */
-    int cut, crossed; /* k = 0 goes through it; what reflects wo upwards and what does not may both be there */
+    double rgb[3], mass, facing; /* facing: its mass times k, or a bound of that where it is cut */
+    int cut;                     /* k = 0 goes through it */
+    int crossed;                 /* maybe some of it reflects wo upwards, and some does not */
 } part;
 
 static int is_cell(const block *b, int axis) {
@@ -89,7 +94,8 @@ static double mass_of(const tabulated_grid *g, const block *b, double mean[2]) {
     const size_t stride = g->columns + 1;
     double mass = 0, x = 0, y = 0, area = 1;
     for (size_t j = b->first[1]; j < b->last[1]; j++) {
-        const double *sums = g->mass + j * stride, *moment = g->moment + j * stride, row = sums[b->last[0]] - sums[b->first[0]];
+        const double *sums = g->mass + j * stride, *moment = g->moment + j * stride,
+                     row = sums[b->last[0]] - sums[b->first[0]];
         mass += row, x += moment[b->last[0]] - moment[b->first[0]], y += row * ((double)j + 0.5);
     }
     if (!(mass > 0)) return 0;
@@ -118,7 +124,8 @@ static part value_of(looking *l, const block *b) {
     out.cut = centre < h.half;
     if (out.cut) { /* as if even; where it is seen in the mean, roughly: between its middle and its nearest corner */
         const double top = centre + h.half, at = fmax(centre, 0.7 * top);
-        for (int a = 0; a < 2; a++) p[a] = middle[a] + copysign(half[a], l->k[a]) * (h.half > 0 ? (at - centre) / h.half : 0);
+        for (int a = 0; a < 2; a++)
+            p[a] = middle[a] + copysign(half[a], l->k[a]) * (h.half > 0 ? (at - centre) / h.half : 0);
         k = mu_half_plane_cell(&h, centre), away = top;
     }
     out.facing = out.mass * (out.cut ? away : k);
@@ -154,7 +161,8 @@ static void refine(looking *l, const block *b, const part *whole, int depth, int
     block half[2][2];
     part of[2][2];
     double off[2] = {0, 0}, less[3] = {0, 0, 0};
-    int known = whole->facing <= largest * l->seen && (!whole->cut || (is_cell(b, 0) && is_cell(b, 1))) && (!whole->crossed || whole->facing <= wide * l->area);
+    int known = whole->facing <= largest * l->seen && (!whole->cut || (is_cell(b, 0) && is_cell(b, 1))) &&
+                (!whole->crossed || whole->facing <= wide * l->area);
     for (int a = 0; a < 2; a++) {
         halve(b, a, half[a]);
         for (int k = 0; k < 2; k++) of[a][k] = value_of(l, &half[a][k]);
@@ -176,7 +184,8 @@ static void refine(looking *l, const block *b, const part *whole, int depth, int
 
 int MU(mu_ibl_albedo_of_cells)(const closure *c, double allowed, double rgb[3]) {
     const surface *s = c->surface;
-    if (!(c->kernel->traits & HAS_JUMPS) || c->kernel == c->kernel->plans[PLAN_WALK] || s->transmission || !(c->wo[2] > 0)) return 0;
+    if (!(c->kernel->traits & HAS_JUMPS) || c->kernel == c->kernel->plans[PLAN_WALK]) return 0;
+    if (s->transmission || !(c->wo[2] > 0)) return 0;
     const double z = (double)c->map.view_z;
     looking l = {.c = c, .grid = &((const tabulated *)s->base.table)->grid, .allowed = allowed * (double)c->wo[2]};
     for (int k = 0; k < 4; k++) l.v[k] = (double)c->map.view[k] / z;
@@ -195,7 +204,7 @@ int MU(mu_ibl_albedo_of_cells)(const closure *c, double allowed, double rgb[3]) 
     const int lobe = c->kernel == c->kernel->plans[PLAN_COMPENSATED] && c->lobe.count;
     for (int k = 0; k < 3; k++) {
         rgb[k] = sum[k] / l.o[2];
-        /* the compensated form's lobe: of a cosine-weighted average of 1 beside lost(wo) (compensated.c) */
+        /* what compensation returns of even light (compensated.c): lost(wi) / A is 1 on average */
         if (lobe) rgb[k] += (double)((1 - c->lobe.passes[0]) * c->lobe.lost * c->lobe.repeated[k]);
     }
     return 1;

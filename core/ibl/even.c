@@ -58,7 +58,7 @@ void mu_ibl_even_make(const mu_ibl_lobe_d *lobe, const double wo[3], mu_ibl_even
         along[k] = fabs(e->wo[k]) / wo[2];
         reach[k] = fmin(rough[k], 1 + 2 * along[k]);
     }
-    /* the chords of the disk (core/bsdf/albedo_quadrature.c) */
+    /* at most how far the disk of middle (a, b) reaches from 0 along an axis, where that is r away: a + sqrt(a² + 1 + 2 b r) */
     for (int k = 0; k < 2; k++)
         e->spread[k] = fmin(rough[k], 1 + 2 * along[k] + sqrt(2 * reach[!k] * along[!k]));
     const double mean[2] = {-(t[0] * m[0] + t[1] * m[1]), -(t[0] * m[1] - t[1] * m[0])};

@@ -76,7 +76,7 @@ void mu_ibl_plan_phases(mu_ibl_plan *plan, size_t samples);
 
 /* How many there are, at most MU_IBL_READS_MOST: 1, settings.samples, or what was chosen. wo.z > 0. */
 size_t mu_ibl_reads(const mu_ibl_plan *plan, const mu_ibl_lobe_f *lobe, const float wo[3], mu_ibl_read *out);
-/* The reads of a view, number by number; of up to MU_IBL_AXES views of one lobe at a time, all of `wo` being set to some. */
+/* The reads of a view, as arrays; and of up to MU_IBL_AXES views of one lobe at a time. What is left of `wo` must be views, too. */
 typedef struct mu_ibl_view {
     size_t count;
     float x[MU_IBL_READS_MOST], y[MU_IBL_READS_MOST], z[MU_IBL_READS_MOST]; /* direction */

@@ -8,7 +8,7 @@
 
 size_t mu_ibl_spread_reads(const mu_ibl_plan *plan, size_t phase, const mu_ibl_lobe_f *lobe, const float wo[3],
                            mu_ibl_read *out);
-/* Of up to MU_IBL_AXES views, view i of lobes[i * stride]; several are worked out at a time. The very same. */
+/* The very same of up to MU_IBL_AXES views, view i of lobes[i * stride], several at a time. */
 void mu_ibl_spread_views(const mu_ibl_plan *plan, size_t phase, size_t views, const mu_ibl_lobe_f *lobes, size_t stride,
                          const float (*wo)[MU_IBL_AXES], mu_ibl_view *out);
 

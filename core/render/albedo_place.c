@@ -3,11 +3,11 @@
 /*
  * albedo_place.c: see albedo_place.h. Cubic between nodes, which four neighbours tell (Lagrange).
  *
- * Where a surface is smooth, its albedo falls off within a cosine of about the slope roughness s along the view: nodes are
- * even in asinh(root(cosine / s)). Around, roughness along the view rises from the one axis' to the other's within their ratio of a
- * quarter turn at either end: nodes are even in the azimuth of (sqrt(sigma_U) x, sqrt(sigma_V) y), which widens both ends alike.
- * Near the horizon albedos go with the cosine's root, at the pole, of a tilt, with the sine: of half the tangents that both
- * have in common roots are taken.
+ * Heights: the albedo of a smooth surface falls off within a cosine of about the slope roughness s along the view. Near the horizon
+ * it goes with the root of the cosine; at the pole, if tilted, with the sine. The root of h = z / (1 + sine), the tangent of half the
+ * elevation, does both: nodes are even in asinh(root(h / s)). Azimuths: the roughness along the view changes from one axis' to the
+ * other's within a part of the quarter turn that is as small as their ratio, beside either axis: nodes are even in the azimuth of
+ * (sqrt(sigma_U) x, sqrt(sigma_V) y), which widens both.
  */
 #include "core/render/albedo_place.h"
 

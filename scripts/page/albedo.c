@@ -3,8 +3,8 @@
 /*
  * albedo.c: see albedo.h. Directions along the lobe (even.h). Cubic between nodes (Lagrange).
  *
- * Nodes are as the renderer's (core/render/albedo_table.c), but that the height's logarithm is a fraction of roots: with h = z / (1 +
- * root(1 - z²)), and a roughness s of the lobe, even in the root of h / (h + s), which takes no time.
+ * Nodes are where the renderer has them (core/render/albedo_place.c), but along heights, where they are even in the root of
+ * h / (h + s), which is quicker than asinh: h = z / (1 + root(1 - z²)), s the mean roughness of the lobe.
  */
 #include "scripts/page/albedo.h"
 

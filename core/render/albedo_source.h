@@ -15,7 +15,7 @@ typedef struct mu_albedo_bound {
     const musurf_slopes *slopes; /* NULL: the type has none */
 } mu_albedo_bound;
 
-/* Both are borrowed. */
+/* Both are borrowed; the lobe is left out where directions in float are too few for it. */
 mu_even_source mu_albedo_source(mu_albedo_bound *bound, const mu_ibl_lobe_d *lobe);
 
 #endif

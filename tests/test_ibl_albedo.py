@@ -3,6 +3,9 @@
 # SPDX-FileCopyrightText: 2026 The musurf authors
 """`musurf ibl albedo` against quadrature of what `musurf eval` says, against a furnace, and sampler against sampler."""
 import math
+import pathlib
+import subprocess
+import sys
 import unittest
 
 import numpy
@@ -31,6 +34,16 @@ def quadrature(material, wo):
 
 
 class Albedo(unittest.TestCase):
+    def test_of_tables_of_compensation(self):
+        """scripts/albedo_tables, which reads the structs of a header: what it finds is the integral to the tables' 1e-2."""
+        script = pathlib.Path(__file__).resolve().parent.parent / "scripts/albedo_tables"
+        done = subprocess.run([sys.executable, script, "alpha=0.5", "tilt=0.3,0.1", "transform=1.5,0.7,-0.3,0.8", "--steps", "1"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        theta, phi, told = map(float, done.stdout.splitlines()[1].split(","))
+        self.assertEqual((theta, phi), (45, 0))
+        right = quadrature(microfacet(alpha=0.5, tilt=[0.3, 0.1], transform=SKEW), [math.sqrt(0.5), 0, math.sqrt(0.5)])[0]
+        self.assertAlmostEqual(told, right, delta=1e-2)
+
     def test_is_the_integral(self):
         """To 5 standard errors of the table and the rule's 1e-4: together 1e-3, whether directions are drawn by rejection (Beckmann) or not."""
         for material in (microfacet(ndf="ggx", alpha=0.5, transform=SKEW, fresnel={"schlick": [0.9, 0.5, 0.1]}),

@@ -27,8 +27,11 @@ static double tail(const musurf_material *material, double share) {
 
 static uint32_t albedo(const void *closure, double allowed, double rgb[3]) {
     const bound *b = closure;
-    return (uint32_t)(b->material->in_float ? mu_ibl_albedo_of_cells_f(&b->closure.f, allowed, rgb)
-                                            : mu_ibl_albedo_of_cells_d(&b->closure.d, allowed, rgb));
+    const musurf_material *m = b->material;
+    if (m->in_float ? mu_ibl_albedo_of_cells_f(&b->closure.f, allowed, rgb) : mu_ibl_albedo_of_cells_d(&b->closure.d, allowed, rgb)) return 1;
+    if (!m->has_moments) return 0;
+    return (uint32_t)(m->in_float ? mu_ibl_albedo_of_walks_f(&b->closure.f, &m->moments, allowed, rgb)
+                                  : mu_ibl_albedo_of_walks_d(&b->closure.d, &m->moments, allowed, rgb));
 }
 
 const musurf_slopes musurf_slopes_table = {sizeof(musurf_slopes), moments, tail, albedo};

@@ -31,8 +31,8 @@ typedef struct musurf_slopes {
     /* [any] Read only if `size` says it is there. Before M: the distance from the mean within which that share of the slopes
      * are, over that of the GGX of the same covariance; 1 where that is not known. */
     double (*tail)(const musurf_material *material, double share);
-    /* [any] Read only if `size` says it is there. Of a bound closure of the type, whose f jumps: how much of even light it reflects, to
-     * `allowed`. 0: not known otherwise than by f. */
+    /* [any] Read only if `size` says it is there. Of a bound closure of the type, whose f jumps or is noise: how much of even light it
+     * reflects, to `allowed`. 0: not known otherwise than by f and samples. */
     uint32_t (*albedo)(const void *closure, double allowed, double rgb[3]);
 } musurf_slopes;
 

@@ -13,7 +13,7 @@ import numpy
 import exr
 from command import answers, microfacet, musurf
 from picture_flip import flip
-from test_ibl_albedo import NDFS, SKEW, quadrature
+from test_ibl_albedo import NDFS, SKEW, quadrature, tables
 
 TECHNIQUES = ("split", "bent-normal", "major-axis", "lobe", "filtered")
 STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
@@ -152,6 +152,21 @@ class Render(unittest.TestCase):
                 self.assertLess(numpy.abs(seen[row, 2] - right).max(), 1e-3 + off, (material["ndf"], row))
                 values.append(right)
             self.assertGreater(abs(values[0] - values[1]).max(), 0.02)
+
+    def test_even_light_of_walks_where_m_turns_tilts(self):
+        """A random walk, which is told by walks: to 1e-3, and 4 standard errors of a million of its own samples; 16 comparisons. As if M turned
+        the lobe it would be off by 0.01 and more."""
+        z = 0.5
+        view = [math.sqrt(1 - z * z), 0, z]
+        for material in (TILTED, NOISY):
+            material = {**material, "multiple_scattering": "random_walk", "fresnel": {"schlick": [0.95, 0.6, 0.2]}}
+            plate = [{"shape": "rectangle", "size": [2, 2], "material": {**material, "transform": {"expression": ["1.5", "u", "-u", "0.6"]}}}]
+            seen = self.render("lobe", plate, {"type": "constant"}, view, size=4, height=2 * z, radius=1e-3)
+            u = [(1 - (1 - (row + 0.5) / 2)) / 2 for row in (0, 3)]
+            found = tables([{**material, "transform": [[1.5, at], [-at, 0.6]]} for at in u], "--rows", 1, "--columns", 1, "--samples", 1 << 20)
+            for row, table in zip((0, 3), found):
+                self.assertLess(table["deviation"], 5e-4)
+                self.assertLess(numpy.abs(seen[row, 2] - table["albedo"][0]).max(), 1e-3 + 4 * table["deviation"], (material["ndf"], row))
 
     def test_even_light_where_m_varies(self):
         """A plate whose roughness along x grows with u, seen along x: image rows are places. 1e-3 and quadrature's 1e-4, between nodes of

@@ -13,7 +13,10 @@
  * Blocks that the line k = 0 crosses are halved down to cells, and these into parts; their density is even, so what of them
  * faces wo is known (half_plane.c). A block is halved along the axis where that changes its estimate most, until for CALM halvings
  * in a row neither axis changes it by more than is allowed; both last changes are added to it then.
+ * Of a random walk it is what leaves after one facet, as walks.c has it.
  */
+#include "core/ibl/cells.h"
+
 #include "core/bsdf/distribution.h"
 #include "core/bsdf/multiple.h"
 #include "core/bsdf/tabulated.h"
@@ -44,11 +47,13 @@ typedef struct looking {
     double allowed;    /* error of E times cos_o */
     double seen, area; /* sigma(wo), or cos_o if that is more; and the error of it that leaves E what is allowed: G2 <= cos_o / seen */
     size_t facets;
+    double along; /* 1 + Lambda_o of a walk, cliffs included; 0: it is none */
+    int parts;    /* r, g, b; and 1 in place of F */
 } looking;
 
 /* The estimate of a block, times cos_o. */
 typedef struct part {
-    double rgb[3], mass, facing; /* facing: its mass times k, or a bound of that where it is cut */
+    double rgb[CELL_PARTS], mass, facing; /* facing: its mass times k, or a bound of that where it is cut */
     int cut;                     /* k = 0 goes through it */
     int crossed;                 /* maybe some of it reflects wo upwards, and some does not */
 } part;
@@ -64,19 +69,20 @@ static void world(const looking *l, const double p[2], double mu[2]) {
 }
 
 /* Of the slope p, F G2. */
-static void passed(looking *l, const double p[2], double rgb[3]) {
+static void passed(looking *l, const double p[2], double rgb[CELL_PARTS]) {
     double m[2];
     world(l, p, m);
     const double up = 1 / sqrt(m[0] * m[0] + m[1] * m[1] + 1), unit[3] = {m[0] * up, m[1] * up, up};
     const double facing = l->o[0] * unit[0] + l->o[1] * unit[1] + l->o[2] * unit[2];
-    real i[3], F[3] = {1, 1, 1};
-    rgb[0] = rgb[1] = rgb[2] = 0, l->facets++;
+    real i[3], F[CELL_PARTS] = {1, 1, 1, 1};
+    for (int k = 0; k < CELL_PARTS; k++) rgb[k] = 0;
+    l->facets++;
     for (int k = 0; k < 3; k++) i[k] = R(2 * facing * unit[k] - l->o[k]);
     if (!(facing > 0 && i[2] > 0)) return;
     const surface *s = l->c->surface;
     if (s->fresnel.kind) MU(fresnel_eval)(&s->fresnel, l->c->eta, smaller(R(facing), 1), F);
-    const double G2 = (double)l->c->kernel->shadowing(l->c, i, 0);
-    for (int k = 0; k < 3; k++) rgb[k] = (double)F[k] * G2;
+    const double G2 = l->along > 0 ? 1 / (l->along + MU(mu_ibl_walk_lambda)(l->c, i)) : (double)l->c->kernel->shadowing(l->c, i, 0);
+    for (int k = 0; k < l->parts; k++) rgb[k] = (double)F[k] * G2;
 }
 
 /* Does some of the rectangle about p reflect wo upwards, to |mu - wo.xy / wo.z| < 1 / wo.z? *crossed: not all of it. */
@@ -107,7 +113,7 @@ static double mass_of(const tabulated_grid *g, const block *b, double mean[2]) {
 
 static part value_of(looking *l, const block *b) {
     const tabulated_grid *g = l->grid;
-    double p[2], half[2], rgb[3];
+    double p[2], half[2], rgb[CELL_PARTS];
     part out = {.mass = mass_of(g, b, p)};
     if (!(out.mass > 0)) return out;
     double k = l->k[2], middle[2], centre = l->k[2], span[2], away = 0;
@@ -130,7 +136,7 @@ static part value_of(looking *l, const block *b) {
     }
     out.facing = out.mass * (out.cut ? away : k);
     passed(l, p, rgb);
-    for (int i = 0; i < 3; i++) out.rgb[i] = out.mass * k * rgb[i];
+    for (int i = 0; i < l->parts; i++) out.rgb[i] = out.mass * k * rgb[i];
     return out;
 }
 
@@ -153,20 +159,20 @@ static int axis_of(const looking *l, const block *b, part of[2][2], const double
     return fmax(off[0], off[1]) > each * l->allowed ? off[1] > off[0] : side[1] > side[0];
 }
 
-static void refine(looking *l, const block *b, const part *whole, int depth, int calm, double sum[3]) {
+static void refine(looking *l, const block *b, const part *whole, int depth, int calm, double sum[CELL_PARTS]) {
     if (whole->facing <= nothing * l->area || depth == DEEPEST || l->facets > FACETS) {
-        for (int i = 0; i < 3; i++) sum[i] += whole->rgb[i];
+        for (int i = 0; i < l->parts; i++) sum[i] += whole->rgb[i];
         return;
     }
     block half[2][2];
     part of[2][2];
-    double off[2] = {0, 0}, less[3] = {0, 0, 0};
+    double off[2] = {0, 0}, less[CELL_PARTS] = {0};
     int known = whole->facing <= largest * l->seen && (!whole->cut || (is_cell(b, 0) && is_cell(b, 1))) &&
                 (!whole->crossed || whole->facing <= wide * l->area);
     for (int a = 0; a < 2; a++) {
         halve(b, a, half[a]);
         for (int k = 0; k < 2; k++) of[a][k] = value_of(l, &half[a][k]);
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < l->parts; i++) {
             const double change = of[a][0].rgb[i] + of[a][1].rgb[i] - whole->rgb[i];
             off[a] = fmax(off[a], fabs(change)), less[i] += change;
         }
@@ -174,7 +180,7 @@ static void refine(looking *l, const block *b, const part *whole, int depth, int
     }
     calm = known ? calm + 1 : 0;
     if (calm == CALM) {
-        for (int i = 0; i < 3; i++) sum[i] += whole->rgb[i] + less[i];
+        for (int i = 0; i < l->parts; i++) sum[i] += whole->rgb[i] + less[i];
         return;
     }
     const int axis = axis_of(l, b, of, off);
@@ -182,12 +188,9 @@ static void refine(looking *l, const block *b, const part *whole, int depth, int
         if (of[axis][k].mass > 0) refine(l, &half[axis][k], &of[axis][k], depth + 1, calm, sum);
 }
 
-int MU(mu_ibl_albedo_of_cells)(const closure *c, double allowed, double rgb[3]) {
-    const surface *s = c->surface;
-    if (!(c->kernel->traits & HAS_JUMPS) || c->kernel == c->kernel->plans[PLAN_WALK]) return 0;
-    if (s->transmission || !(c->wo[2] > 0)) return 0;
+static void all_cells(const closure *c, int parts, double along, double allowed, double sum[CELL_PARTS]) {
     const double z = (double)c->map.view_z;
-    looking l = {.c = c, .grid = &((const tabulated *)s->base.table)->grid, .allowed = allowed * (double)c->wo[2]};
+    looking l = {.c = c, .grid = &((const tabulated *)c->surface->base.table)->grid, .allowed = allowed * (double)c->wo[2], .parts = parts, .along = along};
     for (int k = 0; k < 4; k++) l.v[k] = (double)c->map.view[k] / z;
     for (int k = 0; k < 3; k++) l.o[k] = (double)c->wo[k];
     for (int k = 0; k < 2; k++) {
@@ -199,11 +202,24 @@ int MU(mu_ibl_albedo_of_cells)(const closure *c, double allowed, double rgb[3]) 
     l.k[2] = l.o[2] - l.k[0] * l.tilt[0] - l.k[1] * l.tilt[1];
     const block all = {{0, 0}, {l.grid->columns, l.grid->rows}, {0, 0}, {1, 1}};
     const part whole = value_of(&l, &all);
-    double sum[3] = {0, 0, 0};
+    for (int k = 0; k < CELL_PARTS; k++) sum[k] = 0;
     if (whole.mass > 0) refine(&l, &all, &whole, 0, 0, sum);
+    for (int k = 0; k < CELL_PARTS; k++) sum[k] /= l.o[2];
+}
+
+void MU(mu_ibl_cells_once)(const closure *c, double along, double allowed, double rgb[CELL_PARTS]) {
+    all_cells(c, CELL_PARTS, along, allowed, rgb);
+}
+
+int MU(mu_ibl_albedo_of_cells)(const closure *c, double allowed, double rgb[3]) {
+    const surface *s = c->surface;
+    if (!(c->kernel->traits & HAS_JUMPS) || c->kernel == c->kernel->plans[PLAN_WALK]) return 0;
+    if (s->transmission || !(c->wo[2] > 0)) return 0;
+    double sum[CELL_PARTS];
+    all_cells(c, 3, 0, allowed, sum);
     const int lobe = c->kernel == c->kernel->plans[PLAN_COMPENSATED] && c->lobe.count;
     for (int k = 0; k < 3; k++) {
-        rgb[k] = sum[k] / l.o[2];
+        rgb[k] = sum[k];
         /* what compensation returns of even light (compensated.c): lost(wi) / A is 1 on average */
         if (lobe) rgb[k] += (double)((1 - c->lobe.passes[0]) * c->lobe.lost * c->lobe.repeated[k]);
     }

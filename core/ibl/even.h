@@ -29,5 +29,16 @@ typedef struct mu_ibl_even {
 void mu_ibl_even_make(const mu_ibl_lobe_d *lobe, const double wo[3], mu_ibl_even *even);
 /* u in [0, 1)². Returns the weight; 0: no direction. */
 double mu_ibl_even_direction(const mu_ibl_even *even, const double u[2], double wi[3]);
+/* The same of the ray (cos, sin) of its azimuth, which one after the other of a lattice are told by turning alone. */
+double mu_ibl_even_along(const mu_ibl_even *even, double u, const double ray[2], double wi[3]);
+
+/* What is asked of a direction of light, wi.z > 0: f cos of up to so many kinds; others are left 0. */
+enum { EVEN_PARTS = 4 };
+typedef void (*mu_ibl_toward)(void *context, const double wi[3], double value[EVEN_PARTS]);
+/* The mean over a shifted lattice. */
+void mu_ibl_even_by(const mu_ibl_even *even, mu_ibl_fibonacci lattice, const double shift[2], mu_ibl_toward toward, void *context,
+                    double mean[EVEN_PARTS]);
+/* The same until it is off by `enough`, or by `most` calls; returns what it is off. */
+double mu_ibl_even_mean(const mu_ibl_even *even, mu_ibl_toward toward, void *context, double enough, size_t most, double mean[EVEN_PARTS]);
 
 #endif

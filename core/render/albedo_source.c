@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-static void toward(void *context, const double wi[3], double rgb[3]) {
+static void toward(void *context, const double wi[3], double rgb[EVEN_PARTS]) {
     const mu_albedo_bound *b = context;
     musurf_value value;
     b->type->eval(b->closure, (const float[3]){(float)wi[0], (float)wi[1], (float)wi[2]}, MUSURF_ALL_LOBES, &value);

@@ -42,19 +42,18 @@ typedef struct work {
     const mu_ibl_lobe_f *lobe;
     double enough; /* that a node may be off */
     size_t most;   /* calls of a node */
-    _Bool drawn; /* samples do better than directions */
+    _Bool drawn; /* f is noise: its own samples, or what knows better, do better than directions */
 } work;
 
-/* The M that makes the slopes' standard deviations `sigma` along x and y: M = diag(1 / sigma) root^T, since then M^-T root root^T
- * M^-1 is diag(sigma²); and the lobe under it. */
-static void node_map(const work *w, const float sigma[2], float m[4], mu_ibl_lobe_d *lobe) {
-    for (int k = 0; k < 2; k++) {
-        m[2 * k] = (float)(k ? 0 : w->root[0] > 0 ? w->root[0] / (double)sigma[0] : 1);
-        m[2 * k + 1] = (float)(w->root[0] > 0 ? (k ? w->root[2] : w->root[1]) / (double)sigma[k] : k);
-    }
-    const double det = (double)m[0] * (double)m[3], *mean = w->still->mean;
+/* The M that makes the slopes' standard deviations `sigma` along x and y: M = diag(1 / sigma) R root^T, since then M^-T root root^T
+ * M^-1 is diag(sigma²) whatever turn R is; and the lobe under it. What is radially symmetric before M is the same under all R. */
+static void node_map(const work *w, const float sigma[2], double turn, float m[4], mu_ibl_lobe_d *lobe) {
+    const double c = cos(turn), s = sin(turn), *r = w->root, *mean = w->still->mean;
+    const double rows[4] = {c * r[0], c * r[1] - s * r[2], s * r[0], s * r[1] + c * r[2]};
+    for (int k = 0; k < 4; k++) m[k] = (float)(r[0] > 0 ? rows[k] / (double)sigma[k / 2] : k % 3 == 0);
+    const double det = (double)m[0] * (double)m[3] - (double)m[1] * (double)m[2];
     *lobe = (mu_ibl_lobe_d){.sigma = {(double)sigma[0], (double)sigma[1]}, .turn = {1, 0}};
-    lobe->mean[0] = (double)m[3] * mean[0] / det;
+    lobe->mean[0] = ((double)m[3] * mean[0] - (double)m[2] * mean[1]) / det;
     lobe->mean[1] = ((double)m[0] * mean[1] - (double)m[1] * mean[0]) / det;
 }
 
@@ -70,7 +69,7 @@ static void seat_free(seat *s) {
     free(s->bound.closure);
 }
 
-static _Bool seat_make(const work *w, uint32_t first, uint32_t second, seat *s) {
+static _Bool seat_make(const work *w, uint32_t first, uint32_t second, double turn, seat *s) {
     const mu_albedo_table *t = w->table;
     const mu_ibl_lobe_f *of = w->lobe;
     *s = (seat){.sigma = {of->sigma[0], of->sigma[1]}, .m = {1, 0, 0, 1}, .bound = {w->material->type, NULL, w->slopes}};
@@ -80,7 +79,7 @@ static _Bool seat_make(const work *w, uint32_t first, uint32_t second, seat *s) 
     if (w->map) {
         if (t->sigmas[0] > 1) s->sigma[0] = expf(t->least[0] + (float)first * t->step[0]);
         if (t->sigmas[1] > 1) s->sigma[1] = expf(t->least[1] + (float)second * t->step[1]);
-        node_map(w, s->sigma, s->m, &s->lobe);
+        node_map(w, s->sigma, turn, s->m, &s->lobe);
     }
     s->bound.closure = aligned_alloc(64, (w->material->plan.closure_bytes + 63u) / 64 * 64);
     if (!s->bound.closure) return 0;
@@ -105,7 +104,7 @@ static void fill(void *context, uint32_t row) {
     const uint32_t azimuth = row % t->rows, second = row / t->rows % t->sigmas[1], first = row / t->rows / t->sigmas[1];
     float *rgb = t->rgb + (size_t)3 * row * t->heights;
     seat s;
-    const _Bool made = seat_make(w, first, second, &s);
+    const _Bool made = seat_make(w, first, second, 0, &s);
     const mu_even_effort effort = {w->enough, w->most};
     if (w->drawn) s.source.lobe = NULL;
     for (uint32_t i = 0; i < t->heights; i++, rgb += 3) {
@@ -121,14 +120,15 @@ static void fill(void *context, uint32_t row) {
     if (made) seat_free(&s);
 }
 
-/* f of a view and a direction of light, both mirrored at U (1), at V (2) or both (3), of the lobe's axes. */
+/* f of a view and a direction of light, both mirrored at U (1), at V (2) or both (3), of the lobe's axes; where f is noise, the pdf. */
 static double mirrored(const work *w, const seat *s, const float v[3], const float l[3], int at) {
-    double wo[3], rgb[3];
-    const double *turn = s->lobe.turn, x = (double)(at & 2 ? -l[0] : l[0]), y = (double)(at & 1 ? -l[1] : l[1]);
+    double wo[3];
+    const float turn[2] = {(float)s->lobe.turn[0], (float)s->lobe.turn[1]}, x = at & 2 ? -l[0] : l[0], y = at & 1 ? -l[1] : l[1];
     if (!seat_look(w, s, (const float[3]){at & 2 ? -v[0] : v[0], at & 1 ? -v[1] : v[1], v[2]}, wo)) return 0;
-    s->source.toward(s->source.context,
-           (const double[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, (double)l[2]}, rgb);
-    return rgb[0] + rgb[1] + rgb[2];
+    musurf_value value;
+    w->material->type->eval(s->bound.closure, (const float[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, l[2]}, MUSURF_ALL_LOBES, &value);
+    if (!value.lobes) return 0;
+    return w->drawn ? (double)value.pdf : (double)value.f[0] + (double)value.f[1] + (double)value.f[2];
 }
 
 static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high) {
@@ -145,14 +145,14 @@ static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_
     }
 }
 
-/* Do mirrors at the lobe's axes leave the albedo as it is, to EVEN? Few directions tell: they are mirrored, too, so that what their sums
+/* Do mirrors at the lobe's axes leave the albedo as it is, to EVEN, under a turn before M, too, where M varies? Few directions tell: they are mirrored, too, so that what their sums
  * are off cancels. Of an alpha of some 1e-3 float's rounding of f may be taken for a difference, which costs no more than time. */
 #define EVEN 3e-4
 static _Bool is_even(const work *w) {
     enum { VIEWS = 4, LIGHTS = 34 };
     const mu_ibl_fibonacci lattice = mu_ibl_fibonacci_below(LIGHTS);
     seat s;
-    if (!seat_make(w, 0, 0, &s)) return 0;
+    if (!seat_make(w, 0, 0, 0.5, &s)) return 0;
     _Bool even = s.source.lobe;
     for (int i = 0; even && i < VIEWS; i++) {
         float v[3];
@@ -176,28 +176,38 @@ static _Bool is_even(const work *w) {
     return even;
 }
 
-/* Is f noise, as a random walk's, so that samples are to be asked? Then it is another one beside each direction. */
+/* Is f noise, as a random walk's, so that samples are to be asked? Then it is not in between two directions what it is at these. */
 static _Bool is_drawn(const work *w) {
     enum { PAIRS = 34 };
     seat s;
     float v[3];
     double wo[3];
     int unlike = 0;
-    if (!seat_make(w, 0, 0, &s)) return 0;
+    if (!seat_make(w, 0, 0, 0, &s)) return 0;
     mu_albedo_view_of(s.sigma, (mu_albedo_place){0.6f, 0.1f}, v);
     if (s.source.lobe && seat_look(w, &s, v, wo)) {
         mu_ibl_even directions;
         mu_ibl_even_make(&s.lobe, wo, &directions);
         for (uint32_t i = 0; i < PAIRS; i++) {
-            double u[2], wi[3], f[2][3] = {{0}};
+            double u[2], wi[3], f[3][EVEN_PARTS] = {{0}};
             mu_ibl_fibonacci_at(mu_ibl_fibonacci_below(PAIRS), (const double[2]){0, 0}, i, u);
-            for (int k = 0; k < 2; k++, u[0] *= 0.999)
+            for (int k = 0; k < 3; k++, u[0] *= 0.999)
                 if (mu_ibl_even_direction(&directions, u, wi) > 0) s.source.toward(s.source.context, wi, f[k]);
-            unlike += fabs(f[0][0] - f[1][0]) > 0.05 * f[0][0];
+            unlike += fabs((f[0][0] + f[2][0]) / 2 - f[1][0]) > 2e-3 * f[1][0];
         }
     }
     seat_free(&s);
     return unlike > PAIRS / 4;
+}
+
+/* Does what is noise know its albedo itself? */
+static _Bool is_told(const work *w) {
+    seat s;
+    double wo[3], rgb[3];
+    if (!seat_make(w, 0, 0, 0, &s)) return 0;
+    const _Bool told = s.source.known && seat_look(w, &s, (const float[3]){0, 0, 1}, wo) && s.source.known(s.source.context, 1, rgb);
+    seat_free(&s);
+    return told;
 }
 
 /* By how much the middle of four values twice as far apart misses the one that is there; and so beside their first. */
@@ -243,7 +253,7 @@ static void mark(void *context, uint32_t azimuth) {
     const _Bool level = t->azimuths == 1 || t->rows < t->azimuths;
     unsigned char *sharp = t->sharp + (size_t)azimuth * (t->heights - 1);
     seat s;
-    if (!seat_make(w, 0, 0, &s)) return;
+    if (!seat_make(w, 0, 0, 0, &s)) return;
     for (uint32_t i = 0; i + 1 < t->heights; i++) {
         const _Bool outermost = i < 3 || i + 4 >= t->heights; /* of nodes that are not told along views */
         float off = 0;
@@ -258,7 +268,7 @@ static void mark(void *context, uint32_t azimuth) {
 
 _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
-                           uint32_t threads, mu_error *error) {
+                           uint64_t hits, uint32_t threads, mu_error *error) {
     *t = (mu_albedo_table){.heights = 96, .azimuths = 1, .rows = 1, .sigmas = {1, 1}};
     work w = {.table = t, .material = material, .map = map, .still = still, .lobe = low};
     w.slopes = material->type->extension ? material->type->extension(MUSURF_SLOPES_ID) : NULL;
@@ -270,18 +280,20 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     const _Bool varies = t->sigmas[0] * t->sigmas[1] > 1;
     w.enough = varies ? 2 * ENOUGH : ENOUGH;
     w.drawn = is_drawn(&w);
-    const _Bool lobed = low->sigma[1] > 0 && !w.drawn && !(material->plan.lobes & MUSURF_DELTA_LOBES);
+    const _Bool blind = w.drawn && !is_told(&w); /* samples are all that there is */
+    const _Bool rough = low->sigma[1] > 0 && !(material->plan.lobes & MUSURF_DELTA_LOBES);
+    t->drawn = blind;
     _Bool even = 1;
     if (varies) t->heights = 32;
     if (map || material->plan.needs & MUSURF_NEEDS_TANGENT) {
         even = is_even(&w);
-        if (map && lobed && !even) return 1;
-        if (varies) t->azimuths = even ? 64 : 32; /* else noise, taken as if M turned it */
-        else t->azimuths = even ? 128 : w.drawn ? 48 : 128; /* what is noise needs samples, and is smooth */
-        if (!even) t->heights = varies ? 24 : w.drawn ? 48 : 64;
+        if (map && rough && !even) return 1;
+        t->azimuths = varies ? 64 : !w.drawn ? 128 : even ? 64 : 48; /* of what takes many calls, and is smoother, fewer */
+        if (!even || (w.drawn && !varies)) t->heights = w.drawn ? 48 : 64;
         t->rows = even ? t->azimuths / 4 + 1 : t->azimuths;
     }
     const size_t nodes = (size_t)t->sigmas[0] * t->sigmas[1] * t->rows * t->heights;
+    if (rough && !blind && hits < nodes) return 1; /* a hit is integrated as soon as a node */
     const size_t least = varies ? LEAST_CALLS / 2 : LEAST_CALLS;
     w.most = CALLS / nodes > least ? CALLS / nodes : least;
     t->rgb = malloc(mu_albedo_table_bytes(t));
@@ -289,7 +301,7 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
     for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
         if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
-    if (varies || !lobed) return 1;
+    if (varies || !rough || blind) return 1;
     unsigned char *sharp = calloc((size_t)mu_albedo_intervals(t) * (t->heights - 1), 1);
     if (!sharp) return mu_fail(error, "not enough memory for a table of albedos");
     t->sharp = sharp;

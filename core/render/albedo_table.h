@@ -21,15 +21,16 @@ typedef struct mu_albedo_table {
     uint32_t rows;              /* azimuths that there are nodes for: all, or those of a quarter turn and its end */
     uint32_t sigmas[2];         /* nodes evenly in ln sigma along U and V; 1: it does not vary */
     float least[2], step[2];
-    float *rgb;           /* NULL: no table is near enough */
+    float *rgb;           /* NULL: no table is near enough, or worth while */
+    _Bool drawn;          /* by samples, for want of anything better: where it does not hold, too */
     unsigned char *sharp; /* views between nodes where it is not, azimuth by azimuth; NULL: it is */
 } mu_albedo_table;
 
 /* `map`: NULL for a constant M, of lobe `low`; else sigmas lie between those of `low` and `high`, and `still` are the
- * moments before M. */
+ * moments before M. `hits`: how often it will be asked; below the number of nodes, none are made. */
 _Bool mu_albedo_table_make(mu_albedo_table *table, const mu_material *material, const musurf_map *map,
                            const musurf_moments *still, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high,
-                           uint32_t threads, mu_error *error);
+                           uint64_t hits, uint32_t threads, mu_error *error);
 void mu_albedo_table_free(mu_albedo_table *table);
 size_t mu_albedo_table_bytes(const mu_albedo_table *table);
 

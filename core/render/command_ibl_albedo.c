@@ -62,7 +62,7 @@ typedef struct asked {
     musurf_result result; /* the first that was not good */
 } asked;
 
-static void toward(void *context, const double wi[3], double rgb[3]) {
+static void toward(void *context, const double wi[3], double rgb[EVEN_PARTS]) {
     asked *a = context;
     musurf_probe_values v = {0};
     const musurf_result result = a->probed->probe->evaluate(a->probed->compiled, MUSURF_DOUBLE, a->wo, NULL, wi, &v);

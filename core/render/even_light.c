@@ -4,10 +4,6 @@
  * even_light.c: see even_light.h. f cos, of directions along the lobe (even.h), converges fast where the lobe is smooth, and as
  * fast as it must where a tilt creases it; a random walk, whose f is noise, is better off by weights of its own samples, bounded
  * if random. What f jumps in, a histogram, knows its albedo itself, or nobody does.
- *
- * Lattices of Fibonacci numbers of points, the one after the other: errors fall by more than 2 from each to the next (those of
- * 144 points are some 1e-3), so that three steps of which the first is below 8 `enough`, the second below 4 and the third below 2
- * leave `enough`: of two, both are small by chance once in a few hundred views of a narrow tilt.
  */
 #include "core/render/even_light.h"
 
@@ -16,20 +12,7 @@
 #include "core/ibl/even.h"
 #include "core/render/philox.h"
 
-enum { FIRST = 55, STEPS = 3, DRAWN = 256, LEAST_BATCHES = 4 };
-
-static void by_directions(const mu_even_source *s, const mu_ibl_even *even, mu_ibl_fibonacci lattice,
-                          const double shift[2], double mean[3]) {
-    mean[0] = mean[1] = mean[2] = 0;
-    for (uint32_t i = 0; i < lattice.count; i++) {
-        double u[2], wi[3], rgb[3];
-        mu_ibl_fibonacci_at(lattice, shift, i, u);
-        const double weight = mu_ibl_even_direction(even, u, wi) / lattice.count;
-        if (!(weight > 0)) continue;
-        s->toward(s->context, wi, rgb);
-        for (int c = 0; c < 3; c++) mean[c] += weight * rgb[c];
-    }
-}
+enum { DRAWN = 256, LEAST_BATCHES = 4 };
 
 static void by_samples(const mu_even_source *s, size_t first, size_t count, const double shift[3], double mean[3]) {
     mean[0] = mean[1] = mean[2] = 0;
@@ -64,23 +47,11 @@ static mu_even_mean converge_by_samples(const mu_even_source *s, const mu_even_e
 }
 
 static mu_even_mean converge_by_directions(const mu_even_source *s, const double wo[3], const mu_even_effort *effort) {
-    static const double still[2] = {0, 0};
+    double value[EVEN_PARTS];
     mu_ibl_even even;
-    mu_ibl_fibonacci lattice = mu_ibl_fibonacci_below(FIRST);
-    mu_even_mean mean = {{0, 0, 0}, INFINITY};
-    double steps[STEPS] = {INFINITY, INFINITY, INFINITY}, next[3]; /* the last ones */
     mu_ibl_even_make(s->lobe, wo, &even);
-    for (size_t calls = 0;; lattice = (mu_ibl_fibonacci){lattice.count, lattice.before + lattice.count}) {
-        by_directions(s, &even, lattice, still, next);
-        double step = calls ? 0 : INFINITY;
-        for (int c = 0; c < 3; c++) {
-            step = fmax(step, fabs(next[c] - mean.rgb[c]));
-            mean.rgb[c] = next[c];
-        }
-        steps[2] = steps[1], steps[1] = steps[0], steps[0] = step;
-        mean.error = fmax(fmax(steps[0] / 2, steps[1] / 4), steps[2] / 8), calls += lattice.count;
-        if (mean.error <= effort->enough || calls + lattice.before + lattice.count > effort->most) return mean;
-    }
+    const double error = mu_ibl_even_mean(&even, s->toward, s->context, effort->enough, effort->most, value);
+    return (mu_even_mean){{value[0], value[1], value[2]}, error};
 }
 
 mu_even_mean mu_even_light(const mu_even_source *s, const double wo[3], const mu_even_effort *effort) {
@@ -102,8 +73,9 @@ mu_even_mean mu_even_light_shifted(const mu_even_source *s, const double wo[3], 
         by_samples(s, 0, s->lobe ? each : 2 * each, shift, batch);
         add(&by[0], square[0], b, batch);
         if (!s->lobe) continue;
-        by_directions(s, &even, lattice, shift, batch);
-        add(&by[1], square[1], b, batch);
+        double value[EVEN_PARTS];
+        mu_ibl_even_by(&even, lattice, shift, s->toward, s->context, value);
+        add(&by[1], square[1], b, value);
     }
     return by[by[1].error < by[0].error];
 }

@@ -9,12 +9,12 @@
 
 #include <stddef.h>
 
-#include "core/ibl/ibl.h"
+#include "core/ibl/even.h"
 
 /* What is asked, seen from one wo. */
 typedef struct mu_even_source {
     void *context;
-    void (*toward)(void *context, const double wi[3], double rgb[3]); /* f cos, wi.z > 0; of no delta lobe */
+    mu_ibl_toward toward; /* f cos of r, g, b; of no delta lobe */
     void (*drawn)(void *context, const double u[3], double rgb[3]);   /* weight of a sample; 0 below the horizon */
     const mu_ibl_lobe_d *lobe; /* where light comes from, roughly; NULL: not known, or there are delta lobes: by samples alone */
     _Bool (*known)(void *context, double enough, double rgb[3]); /* itself knows all of it (musurf_slopes.h); NULL: does not */

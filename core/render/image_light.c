@@ -18,6 +18,8 @@
 /* What an albedo may be off that is integrated at a hit, and calls of its material for it at most. */
 #define ENOUGH 1e-4
 enum { CALLS = 1 << 13 };
+/* Samples of a picture below which it is worth while to count what its materials are met by. */
+enum { SMALL = 1 << 18 };
 
 typedef struct lit_material {
     mu_lobe_source source;
@@ -73,7 +75,7 @@ static void albedo_at(const lit_material *own, mu_shading *shading, const mu_ibl
     const mu_ibl_lobe_d wide = {.sigma = {(double)lobe->sigma[0], (double)lobe->sigma[1]},
                                 .turn = {(double)lobe->turn[0], (double)lobe->turn[1]},
                                 .mean = {(double)lobe->mean[0], (double)lobe->mean[1]}};
-    const mu_even_source source = mu_albedo_source(&bound, &wide);
+    const mu_even_source source = mu_albedo_source(&bound, own->albedo.drawn ? NULL : &wide);
     const mu_even_effort effort = {ENOUGH, CALLS};
     mu_even_mean mean = {{0, 0, 0}, 0};
     if (shading->lobes)
@@ -154,11 +156,12 @@ void mu_image_light_row(const mu_tracer *tracer, uint64_t seed, uint32_t x, uint
 
 /* ------------------------------------------------------------------------------------------------ preparation */
 
-/* The least and the largest sigmas that the middles of a row's pixels meet, of each material. */
+/* How often the middles of a row's pixels meet each material, and its least and largest sigmas there. */
 typedef struct survey {
     const mu_tracer *tracer;
     const mu_image_light *light;
     mu_ibl_lobe_f *low, *high; /* rows of `count` */
+    uint64_t *hits;            /* as many; all that are expected, once the rows are together */
 } survey;
 
 static void widen(mu_ibl_lobe_f *low, mu_ibl_lobe_f *high, const mu_ibl_lobe_f *a, const mu_ibl_lobe_f *b) {
@@ -184,26 +187,32 @@ static void survey_row(void *context, uint32_t y) {
             mu_shading shading;
             mu_ibl_lobe_f lobe;
             const uint32_t m = hits[i].material;
-            if (met >> i & 1 && arrive(s->tracer, s->light, &rays[i], &hits[i], &shading, &lobe) && lobe.sigma[1] > 0)
-                widen(&low[m], &high[m], &lobe, &lobe);
+            if (!(met >> i & 1) || !arrive(s->tracer, s->light, &rays[i], &hits[i], &shading, &lobe)) continue;
+            s->hits[(size_t)y * s->light->count + m]++;
+            if (lobe.sigma[1] > 0) widen(&low[m], &high[m], &lobe, &lobe);
         }
     }
 }
 
-/* Ranges of all materials into low[0 ... count - 1] and high. Only where some M varies is there anything to ask. */
+/* Of all materials into low[0 ... count - 1], high and hits. Only where some M varies, or the picture is small, is there anything to ask. */
 static _Bool survey_picture(survey *s, uint32_t threads, mu_error *error) {
     const uint32_t rows = s->tracer->scene->film.height, count = s->light->count;
-    _Bool varies = 0;
-    for (uint32_t m = 0; m < count; m++) varies = varies || s->light->materials[m].source.map;
+    const uint64_t samples = s->light->samples ? s->light->samples : 1, all = samples * rows * s->tracer->scene->film.width;
+    _Bool asked = all < SMALL;
+    for (uint32_t m = 0; m < count; m++) asked = asked || s->light->materials[m].source.map;
     s->low = calloc((size_t)rows * count + 1, sizeof *s->low);
     s->high = calloc((size_t)rows * count + 1, sizeof *s->high);
-    if (!s->low || !s->high) return mu_fail(error, "not enough memory");
-    if (varies) mu_rows(rows, threads, survey_row, s);
+    s->hits = calloc((size_t)rows * count + 1, sizeof *s->hits);
+    if (!s->low || !s->high || !s->hits) return mu_fail(error, "not enough memory");
+    if (asked) mu_rows(rows, threads, survey_row, s);
     for (uint32_t m = 0; m < count; m++) {
         const mu_lobe_source *source = &s->light->materials[m].source;
-        for (uint32_t y = 1; varies && y < rows; y++)
+        for (uint32_t y = 1; asked && y < rows; y++) {
             widen(&s->low[m], &s->high[m], &s->low[(size_t)y * count + m], &s->high[(size_t)y * count + m]);
+            s->hits[m] += s->hits[(size_t)y * count + m];
+        }
         if (!source->map || !(s->low[m].sigma[1] <= s->high[m].sigma[1])) s->low[m] = s->high[m] = source->lobe;
+        s->hits[m] = asked ? samples * s->hits[m] : all;
     }
     return 1;
 }
@@ -222,10 +231,11 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
         const musurf_material_type *type = scene->materials[m].material.type;
         own->slopes = type->extension ? type->extension(MUSURF_SLOPES_ID) : NULL;
         good = mu_albedo_table_make(&own->albedo, &scene->materials[m].material, own->source.map, &own->source.moments,
-                                    &s.low[m], &s.high[m], threads, error);
+                                    &s.low[m], &s.high[m], s.hits[m], threads, error);
     }
     free(s.low);
     free(s.high);
+    free(s.hits);
     return good;
 }
 

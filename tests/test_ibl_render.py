@@ -15,6 +15,8 @@ from command import answers, microfacet, musurf
 from picture_flip import flip
 from test_ibl_albedo import NDFS, SKEW, quadrature, tables
 
+# Samples a pixel of 16 x 16 for which tables of albedos are made: of what is mirrored, of what is not; fewer are integrated one by one.
+MANY, MORE = 20, 48
 TECHNIQUES = ("split", "bent-normal", "major-axis", "lobe", "filtered")
 STUDIO = {"type": "studio", "scale": [1, 0.9, 0.8]}
 
@@ -97,19 +99,21 @@ class Render(unittest.TestCase):
         for i, material in enumerate([microfacet(transform=SKEW, **ndf) for ndf in NDFS] + [
                 microfacet(ndf="beckmann", alpha=0.6, multiple_scattering="compensated", fresnel={"conductor": "Au"}),
                 ggx(0.8, 0.5, rotation=0.6, fresnel={"dielectric": 1.5}, masking="separable")]):
-            seen, wo = self.even(material)
+            seen, wo = self.even(material, samples=MANY)
             place = ((6, 9), (12, 2))[i % 2]
             self.assertLess(numpy.abs(seen[place] - quadrature(material, list(wo[place]))).max(), 1.1e-3, (material, wo[place]))
             far.append(abs(seen[6, 9, 0] - seen[12, 2, 0]))
         self.assertGreater(max(far), 0.1)  # views differ
         for by in TECHNIQUES:
-            self.assertLess(numpy.abs(self.even(material, by)[0] - seen).max(), 1e-5)
+            self.assertLess(numpy.abs(self.even(material, by, samples=MANY)[0] - seen).max(), 1e-5)
 
     def test_even_light_on_tilts_and_histograms(self):
         """Under an M of 4:1, where f jumps and albedos have creases, from above and down to the rim: to 1e-3 and what sums over slopes are
         off, as `by_slopes` says."""
         for material in (TILTED, NOISY):
-            seen, wo = self.even({**material, "transform": FLAT})
+            seen, wo = self.even({**material, "transform": FLAT}, samples=MORE)
+            few = self.even({**material, "transform": FLAT})[0]
+            self.assertTrue(1e-6 < numpy.abs(seen - few).max() < 1.5e-3)  # by a table, and one by one
             for place in ((6, 9), (12, 2), (2, 2), (13, 2)):
                 right, off = by_slopes({**material, "transform": FLAT}, wo[place])
                 self.assertLess(off, 4e-4)
@@ -173,7 +177,7 @@ class Render(unittest.TestCase):
         sigma too; of a distribution that is drawn by rejection."""
         z = 0.6
         plate = lambda rough: [{"shape": "rectangle", "size": [2, 2], "material": microfacet(ndf="beckmann", alpha_x=rough, alpha_y=0.25)}]
-        seen = self.render("lobe", plate({"expression": "0.2 + 0.6*u"}), {"type": "constant"}, [0.8, 0, z], height=2 * z, radius=1e-3)
+        seen = self.render("lobe", plate({"expression": "0.2 + 0.6*u"}), {"type": "constant"}, [0.8, 0, z], height=2 * z, radius=1e-3, samples=MANY)
         for row in (3, 13):
             x = -(1 - (row + 0.5) / 8)
             material = microfacet(ndf="beckmann", alpha_x=0.2 + 0.6 * (x + 1) / 2, alpha_y=0.25)
@@ -204,7 +208,7 @@ class Render(unittest.TestCase):
         balls = [[{"shape": "sphere", "radius": 1, "material": microfacet(alpha_x=x, alpha_y=0.1, rotation=0.4)}]
                  for x in (0.4, {"expression": "0.4 + 0*u"})]
         for by in ("lobe",):
-            pictures = [(self.render(by, ball, STUDIO, view), self.albedo) for ball in balls]
+            pictures = [(self.render(by, ball, STUDIO, view, samples=MANY), self.albedo) for ball in balls]
             self.assertLess(numpy.abs(pictures[0][1] - pictures[1][1]).max(), 2e-3)
             inside = pictures[0][1].min(-1) > 0.1
             constant, varying = (rgb[inside] / albedo[inside] for rgb, albedo in pictures)

@@ -242,11 +242,15 @@ void mu_ibl_globe_filter_row(const mu_ibl_globe *from, size_t taps, const mu_ibl
         const float flat = hypot(n[0], n[1]);
         const float east[2] = {flat > 0 ? -n[1] / flat : 0, flat > 0 ? n[0] / flat : 1};
         const float down[3] = {n[2] * east[1], -n[2] * east[0], -flat};
-        for (size_t i = 0; i < taps; i++) {
-            const float *l = tap[i].local;
-            const float w[3] = {l[0] * down[0] + l[1] * east[0] + l[2] * n[0],
-                                l[0] * down[1] + l[1] * east[1] + l[2] * n[1], l[0] * down[2] + l[2] * n[2]};
-            mu_ibl_globe_add(from, w, tap[i].level, tap[i].weight, sum);
+        for (size_t first = 0; first < taps; first += MU_IBL_BATCH) {
+            mu_ibl_batch b;
+            b.count = taps - first < MU_IBL_BATCH ? taps - first : MU_IBL_BATCH;
+            for (size_t i = 0; i < b.count; i++) {
+                const float *l = tap[first + i].local;
+                b.x[i] = l[0] * down[0] + l[1] * east[0] + l[2] * n[0], b.y[i] = l[0] * down[1] + l[1] * east[1] + l[2] * n[1];
+                b.z[i] = l[0] * down[2] + l[2] * n[2], b.level[i] = tap[first + i].level, b.weight[i] = tap[first + i].weight;
+            }
+            mu_ibl_globe_sum(from, &b, sum);
         }
         for (int k = 0; k < 4; k++) mu_ibl_texel(to, row, column)[k] = sum[k];
     }

@@ -162,6 +162,7 @@ typedef struct survey {
     const mu_image_light *light;
     mu_ibl_lobe_f *low, *high; /* rows of `count` */
     uint64_t *hits;            /* as many; all that are expected, once the rows are together */
+    uint32_t pictures;
 } survey;
 
 static void widen(mu_ibl_lobe_f *low, mu_ibl_lobe_f *high, const mu_ibl_lobe_f *a, const mu_ibl_lobe_f *b) {
@@ -197,7 +198,7 @@ static void survey_row(void *context, uint32_t y) {
 /* Of all materials into low[0 ... count - 1], high and hits. Only where some M varies, or the picture is small, is there anything to ask. */
 static _Bool survey_picture(survey *s, uint32_t threads, mu_error *error) {
     const uint32_t rows = s->tracer->scene->film.height, count = s->light->count;
-    const uint64_t samples = s->light->samples ? s->light->samples : 1, all = samples * rows * s->tracer->scene->film.width;
+    const uint64_t samples = (uint64_t)s->pictures * (s->light->samples ? s->light->samples : 1), all = samples * rows * s->tracer->scene->film.width;
     _Bool asked = all < SMALL;
     for (uint32_t m = 0; m < count; m++) asked = asked || s->light->materials[m].source.map;
     s->low = calloc((size_t)rows * count + 1, sizeof *s->low);
@@ -217,14 +218,14 @@ static _Bool survey_picture(survey *s, uint32_t threads, mu_error *error) {
     return 1;
 }
 
-static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint32_t threads, mu_error *error) {
+static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error) {
     const mu_scene *scene = tracer->scene;
     light->count = scene->material_count;
     light->materials = calloc((size_t)light->count + 1, sizeof *light->materials);
     if (!light->materials) return mu_fail(error, "not enough memory");
     for (uint32_t m = 0; m < light->count; m++)
         if (!mu_lobe_source_make(&light->materials[m].source, &scene->materials[m], error)) return 0;
-    survey s = {.tracer = tracer, .light = light};
+    survey s = {.tracer = tracer, .light = light, .pictures = pictures};
     _Bool good = survey_picture(&s, threads, error);
     for (uint32_t m = 0; good && m < light->count; m++) {
         lit_material *own = &light->materials[m];
@@ -271,14 +272,14 @@ void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *
     }
 }
 
-mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error) {
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error) {
     mu_image_light *light = calloc(1, sizeof *light);
     if (!light) {
         mu_fail(error, "not enough memory");
         return NULL;
     }
     light->samples = tracer->samples;
-    if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, threads, error) &&
+    if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, pictures, threads, error) &&
         (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error))) {
         mu_image_light_choose(light, &tracer->scene->integrator);
         return light;

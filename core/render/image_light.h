@@ -6,7 +6,8 @@
  * Radiance at a first hit is the directional albedo of its material times the reads of a technique (core/ibl/reads.h). The
  * lobe comes from the plugin: the moments of its slopes (musurf_slopes.h) under the M of the hit. All that is needed is made
  * once, before the first sample: the filtered environment, and of each material a table of albedos over what the camera's
- * rays meet. Where the table is not near enough, or there can be none, the albedo is integrated at the hit.
+ * rays meet. Where the table is not near enough, or there can be none, the albedo is integrated at the hit; and everywhere if
+ * there are fewer hits than the table would have nodes.
  */
 #ifndef MU_IMAGE_LIGHT_H
 #define MU_IMAGE_LIGHT_H
@@ -18,8 +19,8 @@ typedef struct mu_image_light mu_image_light;
 /* Whether a scene with a technique is one that it lights: not with a light that is nowhere around, or a material whose lobe
  * is not known, refracts or is blended. A scene without one always is. */
 _Bool mu_image_light_takes(const mu_scene *scene, mu_error *error);
-/* For a tracer whose scene has a technique. NULL on failure: what is not taken, or memory. */
-mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t threads, mu_error *error);
+/* For a tracer whose scene has a technique, and so many pictures of it. NULL on failure: what is not taken, or memory. */
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error);
 /* Another technique, of a light that was made: nothing is made anew. Not while others use it. */
 void mu_image_light_choose(mu_image_light *image_light, const mu_integrator_settings *settings);
 /* Other lights around the scene: filtered, tables stay. Not while others use it. After a failure it is only to be freed. */

@@ -80,6 +80,8 @@ static void name_plan(musurf_material *m, const char *surface) {
         snprintf(more, sizeof more, "albedo integrated for %.2g %% of directions", 100 * (double)m->open);
         append(m->name, sizeof m->name, more);
     }
+    if (p->definition.multiple == MU_RANDOM_WALK && p->definition.fresnel != MU_FRESNEL_NONE && !p->definition.transmission && !mirror)
+        append(m->name, sizeof m->name, "even light by walks, within 1e-3 where slopes are below 1");
     if (p->definition.fresnel == MU_FRESNEL_NONE) append(m->left_out, sizeof m->left_out, "fresnel");
     if (!p->definition.transmission) append(m->left_out, sizeof m->left_out, "refraction");
     if (p->definition.tilt[0] == 0 && p->definition.tilt[1] == 0 && p->definition.ndf != MU_TABULATED)

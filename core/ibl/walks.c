@@ -28,7 +28,7 @@
 #include "core/bsdf/real.h"
 
 /* Facets after which light is made to meet another; numbers given, of two facets with cliffs; points of a lattice at first, and at most. */
-enum { FORCED = 2, NUMBERS = 10, SHIFTS = 8, FIRST = 32, MOST = 1 << 11 };
+enum { FORCED = 2, NUMBERS = 10, SHIFTS = 8, FIRST = 128, MOST = 1 << 11 };
 static const uint32_t vector[NUMBERS] = {1, 182667, 469891, 498753, 110745, 446179, 250185, 118627, 245333, 283199};
 /* Directions asked for one facet, at most, and of cliffs. */
 enum { DIRECTIONS = 1 << 12, OF_CLIFFS = 610 };

@@ -2,8 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * mutant.h: known mistakes, so that the tests can be tested. Compiled with -DMUSURF_MUTANT=n, mutant n
- * replaces the right expression by a wrong one; the default, 0, compiles to the right ones at no cost. n may be a variable, so that one
- * build holds them all (tests/mutant_chosen.h).
+ * replaces the right expression by a wrong one; the default, 0, compiles to the right ones at no cost.
  * - 1: |det M| dropped from Eq. (22)
  * - 2: M where M^-1 belongs, Eq. (12)
  * - 3: 1/|M^T m|^4 forgotten in Eq. (22)

@@ -5,7 +5,7 @@
 /* How much of even light a bound histogram reflects, F included, to `allowed` (cells.c). 0: it is none, or scatters more than once. */
 int MU_SUFFIX(mu_ibl_albedo_of_cells)(const MU_SUFFIX(mu_closure) * closure, double allowed, double rgb[3]);
 /* The same of a bound random walk's surface that does not transmit, to a standard error of `allowed` if it can be had (walks.c).
- * `still`: its slopes before M. 0: it is none. */
+ * `still`: its slopes before M. 0: it is none, or nearly a mirror. */
 int MU_SUFFIX(mu_ibl_albedo_of_walks)(const MU_SUFFIX(mu_closure) * closure, const mu_ibl_slopes *still, double allowed, double rgb[3]);
 
 /* Sigma by its axes: standard deviations of the slope along U = (turn[0], turn[1]) and along V, a quarter turn on; and the mean

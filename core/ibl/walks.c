@@ -30,6 +30,8 @@
 /* Facets after which light is made to meet another; numbers given, of two facets with cliffs; points of a lattice at first, and at most. */
 enum { FORCED = 2, NUMBERS = 10, SHIFTS = 8, FIRST = 128, MOST = 1 << 11 };
 static const uint32_t vector[NUMBERS] = {1, 182667, 469891, 498753, 110745, 446179, 250185, 118627, 245333, 283199};
+/* A direction in float is rounded by 2^-25 of that. */
+#define LEAST_SIGMA 1e-4
 /* Directions asked for one facet, at most, and of cliffs. */
 enum { DIRECTIONS = 1 << 12, OF_CLIFFS = 610 };
 
@@ -90,16 +92,19 @@ static mu_ibl_lobe_d lobe_of(const closure *c, const mu_ibl_slopes *still) {
     return mu_ibl_lobe_of_d(&(mu_ibl_slopes){{(double)mean[0] / z, (double)mean[1] / z}, x[0] * a[0] + x[1] * a[1], x[0] * a[2] + x[1] * a[3], y[0] * a[2] + y[1] * a[3]});
 }
 
-static void leave_once(asked *a, const mu_ibl_slopes *still, double allowed, double once[EVEN_PARTS]) {
+/* 0: the lobe is too narrow for directions in float. */
+static int leave_once(asked *a, const mu_ibl_slopes *still, double allowed, double once[EVEN_PARTS]) {
     if (a->c->kernel->traits & HAS_JUMPS) {
         MU(mu_ibl_cells_once)(a->c, a->along, allowed, once);
     } else {
         const mu_ibl_lobe_d lobe = lobe_of(a->c, still);
         mu_ibl_even even;
+        if (!(lobe.sigma[1] > LEAST_SIGMA)) return 0;
         mu_ibl_even_make(&lobe, (const double[3]){(double)a->c->wo[0], (double)a->c->wo[1], (double)a->c->wo[2]}, &even);
         (void)mu_ibl_even_mean(&even, toward, a, allowed / 2, DIRECTIONS, once);
     }
     add_cliffs(a, once);
+    return 1;
 }
 
 /* What leaves, of the ray as it is. */
@@ -172,7 +177,7 @@ int MU(mu_ibl_albedo_of_walks)(const closure *c, const mu_ibl_slopes *still, dou
     double by[SHIFTS][EVEN_PARTS], once[EVEN_PARTS], share[3];
     a.start = walk_start(c->kernel->plans[PLAN_FULL], c, a.with, (random_stream){0});
     a.along = (double)(area_seen(&a.start, c->wo) / c->wo[2]);
-    leave_once(&a, still, allowed, once);
+    if (!leave_once(&a, still, allowed, once)) return 0;
     const double more = fmax(1 - once[3], 0);
     for (uint32_t s = 0; s < SHIFTS; s++) take(&a, FIRST, 0, 1, s, by[s]);
     for (uint32_t count = FIRST; more * share_of(by, share) > allowed && count < MOST; count *= 2)

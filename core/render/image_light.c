@@ -75,7 +75,8 @@ static void albedo_at(const lit_material *own, mu_shading *shading, const mu_ibl
     const mu_ibl_lobe_d wide = {.sigma = {(double)lobe->sigma[0], (double)lobe->sigma[1]},
                                 .turn = {(double)lobe->turn[0], (double)lobe->turn[1]},
                                 .mean = {(double)lobe->mean[0], (double)lobe->mean[1]}};
-    const mu_even_source source = mu_albedo_source(&bound, own->albedo.drawn ? NULL : &wide);
+    mu_even_source source = mu_albedo_source(&bound, &wide);
+    if (own->albedo.drawn) source.lobe = NULL;
     const mu_even_effort effort = {ENOUGH, CALLS};
     mu_even_mean mean = {{0, 0, 0}, 0};
     if (shading->lobes)

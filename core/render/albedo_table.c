@@ -128,7 +128,7 @@ static double mirrored(const work *w, const seat *s, const float v[3], const flo
     musurf_value value;
     w->material->type->eval(s->bound.closure, (const float[3]){turn[0] * x - turn[1] * y, turn[1] * x + turn[0] * y, l[2]}, MUSURF_ALL_LOBES, &value);
     if (!value.lobes) return 0;
-    return w->drawn ? (double)value.pdf : (double)value.f[0] + (double)value.f[1] + (double)value.f[2];
+    return w->drawn ? 3 * (double)value.pdf : (double)value.f[0] + (double)value.f[1] + (double)value.f[2];
 }
 
 static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_ibl_lobe_f *high) {
@@ -145,8 +145,8 @@ static void place_sigmas(mu_albedo_table *t, const mu_ibl_lobe_f *low, const mu_
     }
 }
 
-/* Do mirrors at the lobe's axes leave the albedo as it is, to EVEN, under a turn before M, too, where M varies? Few directions tell: they are mirrored, too, so that what their sums
- * are off cancels. Of an alpha of some 1e-3 float's rounding of f may be taken for a difference, which costs no more than time. */
+/* Do mirrors at the lobe's axes leave the albedo as it is, to EVEN, under a turn before M, too, where M varies? Few directions tell: they
+ * are mirrored, too, so that what their sums are off cancels. Of an alpha of some 1e-3 float's rounding of f may be taken for a difference, which costs no more than time. */
 #define EVEN 3e-4
 static _Bool is_even(const work *w) {
     enum { VIEWS = 4, LIGHTS = 34 };

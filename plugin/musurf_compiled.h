@@ -28,7 +28,7 @@ struct musurf_material {
     uint32_t transmits;
     uint32_t needs;
     uint32_t bytes, table_bytes, closure_bytes;
-    float unsure, open; /* mu_surface_tables_unsure, mu_surface_tables_open */
+    float unsure, open, reach; /* mu_surface_tables_unsure, mu_surface_tables_open, mu_surface_tables_reach */
     char name
         [160]; /* the longest: "beckmann (std is beckmann here), general transform, double precision, albedo within 0.012,
                      * integrated for 12 % of directions" */

@@ -76,7 +76,13 @@ static void name_plan(musurf_material *m, const char *surface) {
         snprintf(more, sizeof more, "albedo within %.2g", (double)m->unsure);
         append(m->name, sizeof m->name, more);
     }
-    if (m->open > slow) {
+    if (m->reach < INFINITY) {
+        snprintf(more, sizeof more, "albedo integrated");
+        if (m->reach > 0)
+            snprintf(more, sizeof more, "albedo integrated beyond a slope roughness of %.2g",
+                     (double)m->reach);
+        append(m->name, sizeof m->name, more);
+    } else if (m->open > slow) {
         snprintf(more, sizeof more, "albedo integrated for %.2g %% of directions", 100 * (double)m->open);
         append(m->name, sizeof m->name, more);
     }
@@ -98,7 +104,13 @@ static void name_plan(musurf_material *m, const char *surface) {
 static void warn_of_tables(const musurf_host *host, const musurf_material *m) {
     char text[192];
     if (!host || !COVERS(host, message) || !host->message) return;
-    if (m->open > slow) {
+    if (m->reach <= 0) {
+        snprintf(
+            text, sizeof text,
+            "compensation has no tables for an M of the point here: shading integrates all albedos, at 20 to "
+            "250 microseconds each; random_walk needs none");
+        host->message(host->context, MUSURF_WARNING, MULTIPLE_SCATTERING, text);
+    } else if (m->open > slow) {
         snprintf(text, sizeof text,
                  "tables of compensation leave %.2g %% of all directions open: shading integrates albedos "
                  "there, at 20 to 250 microseconds each; random_walk needs none",
@@ -192,6 +204,7 @@ static musurf_result compile(const musurf_host *host, const musurf_setting *sett
                    (p.footprint_from || p.definition.multiple == MU_COMPENSATED ? whole : plain));
     m->unsure = (float)mu_surface_tables_unsure_d(m->in_double);
     m->open = (float)mu_surface_tables_open_d(m->in_double);
+    m->reach = (float)mu_surface_tables_reach_d(m->in_double);
     warn_of_tables(host, m);
     name_sampler(m, noise);
     name_plan(m, in_float ? mu_surface_name_f(m->in_float) : mu_surface_name_d(m->in_double));

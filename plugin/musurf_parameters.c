@@ -153,9 +153,10 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
      VALUES("", MUSURF_FOOTPRINT, MUSURF_MAY_VARY | MUSURF_NO_DEFAULT, -INFINITY, INFINITY, -1, 1, 0)},
     {HEAD(36, "multiple_scattering", "Multiple scattering"),
      "Light that meets several facets: none (it is lost), compensated (a smooth lobe adds what is missing, "
-     "from tables made at compile time, which takes seconds where transform varies; then it serves "
+     "from tables made at compile time, which takes seconds where transform varies; then they serve "
      "reflection by "
-     "what is level, at slope roughnesses of up to 2), or random_walk (followed on the "
+     "what is level, at slope roughnesses of up to 2, and shading integrates all else), or random_walk "
+     "(followed on the "
      "microsurface: the reference, but noisy).",
      CHOICE("none", multiple_choices)},
     {HEAD(37, "smith", "Smith masking"),
@@ -165,6 +166,8 @@ const musurf_param musurf_parameters[PARAMETER_COUNT] = {
     {HEAD(38, "blurs", "Is blurred"),
      "The host blurs its closures (path regularisation): compensated makes tables for that, too, which takes "
      "up to ten times as "
-     "long. Without them a blurred closure scatters singly, as if multiple_scattering were none.",
+     "long. Without them a blurred closure scatters singly, as if multiple_scattering were none; so it does "
+     "where transform "
+     "varies and the microsurface is tilted, or a histogram.",
      VALUES("", MUSURF_FLAG, 0, 0, 1, 0, 1, 0)},
 };

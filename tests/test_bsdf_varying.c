@@ -100,21 +100,8 @@ static void keeps_light_of_another(void **state) {
     free(b.memory);
 }
 
-static void refuses_what_has_no_grid(void **state) {
-    (void)state;
-    mu_complaint why;
-    mu_definition d = varying(MU_GGX, 0.3, 0.01);
-    d.tilt[0] = 0.1;
-    assert_false(mu_definition_check(&d, &why));
-    assert_string_equal(why.field, "multiple");
-    d.tilt[0] = 0, d.fresnel = MU_FRESNEL_DIELECTRIC, d.transmission = 1;
-    assert_false(mu_definition_check(&d, &why));
-    assert_string_equal(why.field, "multiple");
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(keeps_light_under_any_map),
-                                       cmocka_unit_test(keeps_light_of_another),
-                                       cmocka_unit_test(refuses_what_has_no_grid)};
+                                       cmocka_unit_test(keeps_light_of_another)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

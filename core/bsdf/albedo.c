@@ -39,19 +39,19 @@ float mu_albedo_lost(const albedo_source *s, const closure *c) {
     if (s->slopes && c->kernel->traits & HAS_JUMPS) {
         s->effort->facets +=
             ALBEDO_SLOPES / 4; /* a slope, whose density is not sought, takes a quarter of a facet's time */
-        return 1 - mu_albedo_of_slopes(c, s->slopes);
+        return 1 - (s->stride ? mu_albedo_of_slopes(c, s->slopes, s->begin, s->stride)
+                              : mu_albedo_of_slopes(c, s->slopes, 0, 1));
     }
     return 1 - MU(albedo_integral)(c, s->lengths[is_blurred(s, c)], s->allowed, s->effort);
 }
 
-/* Of what meets two facets or more and leaves, the share that leaves on the upper side, under uniform light from above:
- * walks from cosine-distributed directions. */
-static double share_above(const albedo_source *source) {
+/* Under uniform light from above: walks from cosine-distributed directions. */
+double mu_albedo_share_above(const albedo_source *source, int walks) {
     multiple with = {0};
     MU(multiple_average)(source->surface, with.average);
     double above = 0, all = 0;
-    for (int i = 0; i < WALKS; i++) {
-        const float u0 = ((float)i + 0.5f) / WALKS, u1 = (float)fmod(i * 0.61803398874989485, 1);
+    for (int i = 0; i < walks; i++) {
+        const float u0 = ((float)i + 0.5f) / (float)walks, u1 = (float)fmod(i * 0.61803398874989485, 1);
         const float sine = sqrtf(u0), phi = (float)(2 * PI) * u1;
         const float wo[3] = {sine * cosf(phi), sine * sinf(phi), sqrtf(1 - u0)}, u[3] = {u0, u1, 0.5f};
         closure c;
@@ -205,7 +205,7 @@ void mu_albedo_make(const albedo_source *source, mu_albedo *t, albedo_room *room
     /* passes average is the same from both sides but for eta², or the surface were not reciprocal */
     const double eta2 = source->definition->dielectric * source->definition->dielectric,
                  above = (double)t->side[0].average, below = (double)t->side[1].average * eta2;
-    const double passes = fmin((1 - share_above(source)) * above, fmin(above, below));
+    const double passes = fmin((1 - mu_albedo_share_above(source, WALKS)) * above, fmin(above, below));
     t->side[0].passes = (float)(passes / above);
     t->side[1].passes = (float)(passes / below);
 }

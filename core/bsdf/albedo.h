@@ -216,6 +216,7 @@ typedef struct albedo_source {
     int trusting;                      /* not every cell is tested */
     int opens;                         /* patches may stay open */
     const struct albedo_slope *slopes; /* of a histogram */
+    int begin, stride;                 /* and which of them, if not all: every so manieth */
     const albedo_lengths *lengths[2];  /* of slopes: of its distribution; of what is blurred, GGX */
     albedo_effort *effort;             /* so far */
     size_t facets;                     /* that refining a table may take, of that */
@@ -246,6 +247,7 @@ typedef struct albedo_slope {
     double p[2], weight;
 } albedo_slope;
 void mu_albedo_slopes(const mu_surface_f *s, albedo_slope out[ALBEDO_SLOPES]);
-float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES]);
+float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES], int begin,
+                          int stride);
 
 #endif

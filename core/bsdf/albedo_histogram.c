@@ -31,14 +31,15 @@ void mu_albedo_slopes(const mu_surface_f *s, albedo_slope out[ALBEDO_SLOPES]) {
     }
 }
 
-float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES]) {
+float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES], int begin,
+                          int stride) {
     const double z = (double)c->map.view_z, v[4] = {(double)c->map.view[0] / z, (double)c->map.view[1] / z,
                                                     (double)c->map.view[2] / z, (double)c->map.view[3] / z};
     const double tilt[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]},
                  o[3] = {(double)c->wo[0], (double)c->wo[1], (double)c->wo[2]};
-    double sum = 0;
+    double sum = 0, area = 0;
     if (!(o[2] > 0)) return 1;
-    for (int n = 0; n < ALBEDO_SLOPES; n++) {
+    for (int n = begin; n < ALBEDO_SLOPES; n += stride) {
         const double p[2] = {slopes[n].p[0] - tilt[0], slopes[n].p[1] - tilt[1]};
         const double m[3] = {v[0] * p[0] + v[2] * p[1], v[1] * p[0] + v[3] * p[1], 1};
         const double seen = o[0] * m[0] + o[1] * m[1] + o[2];
@@ -46,8 +47,10 @@ float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBED
         const double length = sqrt(m[0] * m[0] + m[1] * m[1] + 1),
                      unit[3] = {m[0] / length, m[1] / length, 1 / length};
         sum += slopes[n].weight * seen * MU(albedo_passed)(c, unit, seen / length);
+        area += slopes[n].weight * seen;
     }
-    return (float)fmin(sum / o[2], 1);
+    /* the area is better known: of what hardly loses anything what these slopes are off of it must not count as lost */
+    return area > 0 ? (float)fmin(sum / area * ((double)c->sigma / z / o[2]), 1) : 0;
 }
 
 #endif

@@ -80,7 +80,8 @@ static void integrate(const mu_albedo *t, const mu_albedo_frame *f, const mu_alb
     integrate_panel(t, f, side, quadrant, u0, u1, s0, high, sums);
 }
 
-/* Along u a cell at 0 is halved toward it: where u is a logarithm, that is where most azimuths are. */
+/* Along u a cell at 0 is halved toward it: where u is a logarithm, that is where most azimuths are; and of a frame whose axes differ by more
+ * than the table's, they are nearer still. */
 static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albedo_side *side, int quadrant,
                     double u0, double u1, double s0, double s1, double *cosines) {
     double sums[2] = {0, 0};
@@ -89,11 +90,13 @@ static double share(const mu_albedo *t, const mu_albedo_frame *f, const mu_albed
         for (int k = 0; k < parts; k++)
             integrate(t, f, side, quadrant, u0 + (u1 - u0) * k / parts, u0 + (u1 - u0) * (k + 1) / parts, s0,
                       s1, sums);
-    } else if (u0 > 0 || t->columns == 1) {
+    } else if (u0 > 0) {
         integrate(t, f, side, quadrant, u0, u1, s0, s1, sums);
     } else {
+        const double near = fmin(1, (double)(f->k / t->frame.k)),
+                     log = t->columns == 1 ? near < 0.9 : (double)t->frame.log;
         double high = u1;
-        for (; high * (double)t->frame.log > 0.5; high /= 2)
+        for (; high * log > 0.5 * near; high /= 2)
             integrate(t, f, side, quadrant, high / 2, high, s0, s1, sums);
         integrate(t, f, side, quadrant, 0, high, s0, s1, sums);
     }

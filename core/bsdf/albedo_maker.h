@@ -37,6 +37,8 @@ typedef struct patch_maker {
 
 /* A closure of the source; 0 if it sees nothing. */
 int mu_albedo_bind(const albedo_source *s, const float w[3], mu_closure_f *c);
+/* Of what meets two facets or more and leaves, the share that leaves on the upper side, by so many walks. */
+double mu_albedo_share_above(const albedo_source *source, int walks);
 /* 1 - E toward w, which is seen from the side, w.z > 0. */
 float mu_albedo_toward(const patch_maker *m, const float w[3]);
 /* 1 - E at u and S of the root patch, from 0 to 1. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
-/* albedo_set.c: makes the tables of a surface, and chooses among them. */
+/* albedo_set.c: makes the tables of a surface, and chooses among them, or what integrates. */
 #include "core/bsdf/albedo_set.h"
 #include "core/bsdf/albedo_maker.h"
 #include "core/bsdf/multiple.h"
@@ -56,7 +56,12 @@ static size_t floats_of_one(const mu_definition *d, int is_blurred) {
     if (is_blurred) return (tilted ? 32u : 8u) * 2 * side * side * sides;
     return (tilted ? MANY : mu_transform_is_similarity(d->transform) ? FEW : SOME * sides) * sides;
 }
+/* Do tables serve an M of the point? */
+static int is_graded(const mu_definition *d) {
+    return d->compensation_varies && is_level(d) && !d->transmission;
+}
 static size_t floats(const mu_definition *d) {
+    if (d->compensation_varies) return is_graded(d) ? floats_of_one(d, 0) : 0;
     return floats_of_one(d, 0) + (d->compensation_blurs ? ALBEDO_BLURS * floats_of_one(d, 1) : 0);
 }
 
@@ -67,19 +72,19 @@ static mu_definition blurred(const mu_definition *single) {
     return ggx;
 }
 
+/* Under an M of the point: is what blurring makes of it another surface, that needs grids and averages of its own? */
+static int has_other(const mu_definition *d) {
+    return d->compensation_varies && d->compensation_blurs && is_level(d) && d->ndf != MU_GGX;
+}
 /* Of a grid of its own, and of GGX's. */
 static size_t grid_tables(const mu_definition *d) {
-    return !d->compensation_varies
-               ? 0
-               : (size_t)ALBEDO_GRID_TABLES * (d->compensation_blurs && d->ndf != MU_GGX ? 2 : 1);
-}
-static size_t grid_floats(const mu_definition *d) {
-    return (size_t)((ALBEDO_GRID_TABLES * ALBEDO_GRID_MEAN + ALBEDO_GRID_AVERAGES) *
-                    (d->transmission ? 2 : 1));
+    return is_graded(d) ? (size_t)ALBEDO_GRID_TABLES * (has_other(d) ? 2 : 1) : 0;
 }
 /* Values; patches; tables of grids; the surfaces that they are made from. */
 static size_t all_floats(const mu_definition *d) {
-    return floats(d) + grid_tables(d) / ALBEDO_GRID_TABLES * grid_floats(d);
+    return floats(d) + grid_tables(d) * ALBEDO_GRID_MEAN +
+           grid_tables(d) / ALBEDO_GRID_TABLES * ALBEDO_GRID_AVERAGES +
+           (d->compensation_varies ? (has_other(d) ? 2 : 1) * (size_t)ALBEDO_MEANS_FLOATS : 0);
 }
 static size_t values_bytes(const mu_definition *d) {
     return padded(sizeof(mu_albedo_set) + all_floats(d) * sizeof(float));
@@ -94,12 +99,15 @@ static size_t grids_bytes(const mu_definition *d) {
 static size_t open_bytes(const mu_definition *d) {
     return padded(sizeof(albedo_open) + (d->ndf == MU_TABULATED ? ALBEDO_SLOPES * sizeof(albedo_slope) : 0));
 }
+static size_t other_bytes(const mu_definition *d) {
+    const mu_definition single = reduced(d), ggx = blurred(&single);
+    return has_other(d) ? padded(sizeof(albedo_open)) + padded(MU(mu_surface_bytes)(&ggx)) : 0;
+}
 
 size_t mu_albedo_set_bytes(const mu_definition *d) {
-    const mu_definition single = reduced(d), ggx = blurred(&single);
-    const size_t one = MU(mu_surface_bytes)(&single), other = MU(mu_surface_bytes)(&ggx);
-    return values_bytes(d) + patches_bytes(d) + grids_bytes(d) + open_bytes(d) +
-           padded(one > other ? one : other);
+    const mu_definition single = reduced(d);
+    return values_bytes(d) + patches_bytes(d) + grids_bytes(d) + open_bytes(d) + other_bytes(d) +
+           padded(MU(mu_surface_bytes)(&single));
 }
 
 /* The least roughness to which blurring raises a surface (mu_blur): asked of it, for only it knows what stands for a histogram. */
@@ -212,18 +220,39 @@ static void make_blurs(albedo_source *source, mu_albedo_set *out, albedo_room *r
             (unsigned char)is_gap(&context, out, (out->log_blur[k] + out->log_blur[k + 1]) / 2, wanted);
 }
 
-/* Of the distribution, and of GGX, from another surface in the same place, unless that is the same. */
-static void make_grids(albedo_source *source, mu_albedo_set *out, mu_albedo *table, void *memory,
-                       albedo_room *room) {
+/* What integrates: all that the tables were made of, but for what they are made with. */
+static void keep(albedo_open *open, const albedo_source *source, double turn) {
+    open->source = *source;
+    open->turn[0] = (float)cos(turn), open->turn[1] = (float)sin(turn);
+    open->source.definition = NULL, open->source.effort = NULL, open->source.allowed = source->error / 2;
+}
+
+/* Averages, and a grid if tables serve. */
+static void make_for_points(albedo_source *source, const albedo_open *open, mu_albedo *table,
+                            albedo_room *room, albedo_grid *grid, albedo_means *means) {
+    room->used[0] += mu_albedo_means_make(source, open, room->values + room->used[0], means);
+    if (table) mu_albedo_grid_make(source, table, room, grid);
+}
+
+/* Of the distribution, and of GGX, which blurring makes of what is level. */
+static void make_points(const mu_definition *d, albedo_source *source, mu_albedo_set *out, albedo_open *open,
+                        mu_albedo *table, void *other_at, albedo_room *room) {
     const mu_definition ggx = blurred(source->definition);
-    float other = 0;
-    mu_albedo_grid_make(source, table, room, &out->grid, &out->unsure);
-    if (source->definition->ndf == MU_GGX) out->blurred = out->grid, out->blurs = 1;
-    if (!out->blurs || out->blurred.table) return;
-    source->surface = MU(mu_surface_make)(&ggx, memory), source->definition = &ggx;
-    source->lengths[0] = source->lengths[1];
-    mu_albedo_grid_make(source, table + ALBEDO_GRID_TABLES, room, &out->blurred, &other);
-    out->unsure = fmaxf(out->unsure, other);
+    if (!is_graded(d)) table = NULL;
+    keep(open, source, 0), out->open = open;
+    make_for_points(source, open, table, room, &out->grid, &out->means);
+    out->blurs = is_level(d) && (d->compensation_blurs || d->ndf == MU_GGX);
+    if (!has_other(d)) {
+        out->blurred = out->grid, out->blurred_means = out->means, out->other = open;
+        return;
+    }
+    albedo_open *const other = other_at;
+    source->surface = MU(mu_surface_make)(&ggx, (char *)other_at + padded(sizeof *other));
+    source->definition = &ggx, source->lengths[0] = source->lengths[1];
+    keep(other, source, 0), out->other = other;
+    make_for_points(source, other, table ? table + ALBEDO_GRID_TABLES : NULL, room, &out->blurred,
+                    &out->blurred_means);
+    source->definition = NULL;
 }
 
 /* Keeps what the tables were made of, if any of them is open somewhere. */
@@ -234,17 +263,14 @@ static void keep_open(const mu_definition *d, mu_albedo_set *out, albedo_open *o
     for (int k = 0; k < out->levels; k++)
         for (int side = 0; side < (d->transmission ? 2 : 1); side++)
             opens |= out->level[k].side[side].open > 0;
-    out->open = opens ? open : NULL;
-    if (!opens) return;
-    open->source = *source, open->turn[0] = (float)cos(turn_of(d)), open->turn[1] = (float)sin(turn_of(d));
-    open->source.definition = NULL, open->source.effort = NULL,
-    open->source.allowed = d->compensation_error / 2;
+    if (opens) keep(open, source, turn_of(d)), out->open = open;
 }
 
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
     const mu_definition single = reduced(d);
     char *const patches = (char *)out + values_bytes(d), *const grid = patches + patches_bytes(d),
-                *const open_at = grid + grids_bytes(d), *const single_at = open_at + open_bytes(d);
+                *const open_at = grid + grids_bytes(d), *const other_at = open_at + open_bytes(d),
+                *const single_at = other_at + other_bytes(d);
     albedo_room room = {.values = out->values,
                         .patch = (void *)patches,
                         .most = {all_floats(d), all_floats(d) / ALBEDO_PATCH_FLOATS}};
@@ -267,16 +293,17 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
         source.blur = 0;
     }
     memset(out->gap, 0, sizeof out->gap);
-    mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
-    out->levels = 1, out->blurs = d->compensation_blurs;
-    out->unsure = 0, out->grid = out->blurred = (albedo_grid){.table = NULL};
+    out->levels = !d->compensation_varies || is_graded(d), out->blurs = d->compensation_blurs;
+    out->unsure = 0, out->open = out->other = NULL, out->grid = out->blurred = (albedo_grid){.table = NULL};
+    out->means = out->blurred_means = (albedo_means){.value = NULL};
+    if (out->levels) mu_albedo_make(&source, &out->level[0], &room, floats_of_one(d, 0));
     /* the rest of the work is for these */
-    source.facets = ALBEDO_FACETS / 4 * 3 / (size_t)(grid_tables(d) > ALBEDO_GRID_TABLES ? 2 : 1);
+    source.facets = ALBEDO_FACETS / 4 * 3 / (size_t)(has_other(d) ? 2 : 1);
     if (d->compensation_varies)
-        make_grids(&source, out, (void *)grid, single_at, &room);
+        make_points(d, &source, out, open, (void *)grid, other_at, &room);
     else if (out->blurs)
         make_blurs(&source, out, &room);
-    keep_open(d, out, open, &source);
+    if (!d->compensation_varies) keep_open(d, out, open, &source);
     for (int k = 0; k < out->levels; k++)
         for (int side = 0; side < (d->transmission ? 2 : 1); side++) {
             const float off = out->level[k].side[side].unsure;
@@ -284,12 +311,24 @@ void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out) {
         }
     for (int k = 0; k < out->levels; k++) mu_albedo_turn(&out->level[k].frame, turn_of(d));
     out->bytes = sizeof *out + room.used[0] * sizeof(float) + room.used[1] * sizeof(albedo_patch) +
-                 grids_bytes(d) + (out->open ? open_bytes(d) : 0);
+                 grids_bytes(d) + (out->open ? open_bytes(d) + other_bytes(d) : 0);
 }
 
-void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out) {
+void mu_albedo_set_choose_moved(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out) {
+    const albedo_grid *const grid = blur > 0 ? &set->blurred : &set->grid;
+    out->set = set, out->blur = blur, out->moved = 1, out->open = 0;
+    if (grid->table && mu_albedo_grid_choose(grid, v, out)) return;
+    mu_albedo_means_choose(blur > 0 ? &set->blurred_means : &set->means, blur > 0 ? set->other : set->open, v,
+                           out);
+}
+
+void mu_albedo_set_choose(const mu_albedo_set *set, const double v[4], mu_lobe *out) {
     const mu_albedo *t = &set->level[0];
-    out->set = set, out->blur = 0, out->open = 0;
+    if (!set->levels) {
+        mu_albedo_set_choose_moved(set, 0, v, out);
+        return;
+    }
+    out->set = set, out->blur = 0, out->open = out->moved = 0;
     out->count = 1, out->share[0] = 1, out->level[0] = t, out->frame = t->frame;
     for (int side = 0; side < 2; side++) out->average[side] = t->side[side].average;
     out->passes[0] = t->side[0].passes;
@@ -299,7 +338,7 @@ void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const do
     const int last = set->levels - 2;
     int k = 0;
     if (last < 0) {
-        mu_albedo_set_choose(set, out);
+        mu_albedo_set_choose(set, v, out);
         return;
     }
     const float x = fminf(fmaxf(log2f(blur), set->log_blur[0]), set->log_blur[last]), *const n =
@@ -308,7 +347,7 @@ void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const do
     const float f = last ? (x - n[k]) / (n[k + 1] - n[k]) : 0,
                 g = last ? mu_albedo_share(x, n[k], n[k + 1]) : 0;
     const mu_albedo *t = &set->level[1 + k], *next = last ? t + 1 : t;
-    out->set = set, out->blur = blur, out->open = g > 0 && set->gap[k];
+    out->set = set, out->blur = blur, out->moved = 0, out->open = g > 0 && set->gap[k];
     out->count = g > 0 ? 2 : 1;
     out->level[0] = t, out->share[0] = 1 - g, out->level[1] = next, out->share[1] = g;
     mu_albedo_lay(v, &out->frame);

@@ -11,7 +11,9 @@
  *
  * A surface has one table, and, if it may be blurred (compensation_blurs), one for each of some roughnesses from its own least on.
  * For an M of the point (compensation_varies) it has a grid over A and B instead of those (albedo_grid.c), and one of GGX,
- * which is what blurring makes of it.
+ * which is what blurring makes of it. Where no table is near enough, and for all M of the point of what transmits or is not
+ * level, what is lost is integrated while shading (albedo_open.c); what M alone decides, averages, is tabulated over all M
+ * (albedo_means.c).
  */
 #ifndef MU_ALBEDO_SET_H
 #define MU_ALBEDO_SET_H
@@ -20,10 +22,12 @@
 
 /* Nodes along a slope roughness; what is blurred with a tilt has as many at most. */
 enum {
-    ALBEDO_NODES = 20,
+    ALBEDO_NODES = 16,
+    ALBEDO_SMOOTH_NODES = 8, /* without a table of their own */
+    ALBEDO_GRID_NODES = ALBEDO_SMOOTH_NODES + ALBEDO_NODES,
     ALBEDO_BLURS = 24,
-    ALBEDO_GRID_TABLES = ALBEDO_NODES * (ALBEDO_NODES - 1) / 2,
-    ALBEDO_GRID_AVERAGES = ALBEDO_NODES * (2 * ALBEDO_NODES - 1),
+    ALBEDO_GRID_TABLES = ALBEDO_NODES * (ALBEDO_NODES + 1) / 2,
+    ALBEDO_GRID_AVERAGES = ALBEDO_GRID_NODES * (2 * ALBEDO_GRID_NODES - 1),
     ALBEDO_GRID_MEAN = 3 << 9, /* floats that a table takes as a mean, and at most */
     ALBEDO_GRID_MOST = 1 << 13
 };
@@ -45,10 +49,29 @@ int mu_albedo_place_nodes(const albedo_probes *p, float from, float to, float er
 /* Tables at slope roughnesses i >= j (albedo_grid_node); ln of the averages there and midway between. */
 typedef struct albedo_grid {
     const mu_albedo *table;
-    const float *log_average[2]; /* of both sides */
-    int count;                   /* of nodes, log2 of roughnesses */
-    float node[ALBEDO_NODES];
+    const float *log_average; /* of what is reflected: grids know nothing else */
+    int count;                /* of nodes, log2 of roughnesses */
+    float node[ALBEDO_GRID_NODES];
+    /* what lies from a node to the next along both axes is not near enough */
+    unsigned char open[ALBEDO_GRID_NODES * (ALBEDO_GRID_NODES - 1) / 2];
 } albedo_grid;
+
+/* Averages over all M of the point (albedo_means.c). */
+enum {
+    ALBEDO_MEANS_ROUGH = 12,
+    ALBEDO_MEANS_SHAPES = 8,
+    ALBEDO_MEANS_ANGLES = 8,
+    ALBEDO_MEANS_KINDS = 3, /* ln of the average above, and below; passes above */
+    ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS
+};
+typedef struct albedo_means {
+    const float *value; /* NULL: there are none */
+    double root
+        [3]; /* the second moments of slopes about 0 are L L^T, L = [root[0] 0; root[1] root[2]], in slope units */
+    double axis;         /* from which the angle is measured */
+    double middle, wide; /* of log2 of roughnesses */
+    int angles, even;    /* 1: no angle matters; even: from 0 to pi/2, mirrored at both */
+} albedo_means;
 
 static inline int albedo_grid_node(int i, int j) {
     return i * (i + 1) / 2 + j;
@@ -64,14 +87,16 @@ typedef struct albedo_open {
 } albedo_open;
 
 struct mu_albedo_set {
-    int blurs;                              /* there are tables for what is blurred */
-    int levels;                             /* 1 + blurs */
-    float unsure;                           /* of level[0], and of the grids */
-    size_t bytes;                           /* that it takes */
-    const albedo_open *open;                /* NULL: no patch is */
-    albedo_grid grid, blurred;              /* for an M of the point; else of no tables */
-    unsigned char gap[ALBEDO_BLURS];        /* what lies between level[1 + k] and the next is open */
-    float log_blur[ALBEDO_BLURS];           /* log2 of the roughness of level[1 ...] */
+    int blurs;                         /* there are tables for what is blurred */
+    int levels;                        /* 1 + blurs; 0: all is integrated */
+    float unsure;                      /* of level[0], and of the grids */
+    size_t bytes;                      /* that it takes */
+    const albedo_open *open;           /* NULL: nothing is */
+    const albedo_open *other;          /* of GGX, for what is blurred under an M of the point; NULL: is not */
+    albedo_grid grid, blurred;         /* for an M of the point; else of no tables */
+    albedo_means means, blurred_means; /* so */
+    unsigned char gap[ALBEDO_BLURS];   /* what lies between level[1 + k] and the next is open */
+    float log_blur[ALBEDO_BLURS];      /* log2 of the roughness of level[1 ...] */
     float log_average[2][2 * ALBEDO_BLURS]; /* of both sides: of these, and midway to the next */
     mu_albedo level[1 + ALBEDO_BLURS];
     float values[];
@@ -80,23 +105,42 @@ struct mu_albedo_set {
 /* Memory for the set of a definition, scratch included, and making it there. */
 size_t mu_albedo_set_bytes(const mu_definition *d);
 void mu_albedo_set_make(const mu_definition *d, mu_albedo_set *out);
-/* The tables of the definition's M. */
-void mu_albedo_set_choose(const mu_albedo_set *set, mu_lobe *out);
+/* What there is of the definition's M, which makes V of s M^-1. */
+void mu_albedo_set_choose(const mu_albedo_set *set, const double v[4], mu_lobe *out);
+/* Of an M of the point, blurred or not. */
+void mu_albedo_set_choose_moved(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out);
 /* Blurred to alpha, which makes V of s M^-1. */
 void mu_albedo_set_choose_blurred(const mu_albedo_set *set, float blur, const double v[4], mu_lobe *out);
 
 /* Makes the tables of a grid. */
-void mu_albedo_grid_make(const albedo_source *source, mu_albedo *table, albedo_room *room, albedo_grid *out,
-                         float *unsure);
-/* Its tables for V = s M^-1. */
-void mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *out);
+void mu_albedo_grid_make(const albedo_source *source, mu_albedo *table, albedo_room *room, albedo_grid *out);
+/* Its tables for V = s M^-1; 0 if they are not near enough. */
+int mu_albedo_grid_choose(const albedo_grid *grid, const double v[4], mu_lobe *out);
+/* The roughness up to which they are, whatever the other. */
+float mu_albedo_grid_reach(const albedo_grid *grid);
+
+/* Makes the averages of what `open` integrates, in `values`, of ALBEDO_MEANS_FLOATS; how many it took. */
+size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,
+                            albedo_means *out);
+/* The lobe of V = s M^-1, to be integrated. */
+void mu_albedo_means_choose(const albedo_means *means, const albedo_open *open, const double v[4],
+                            mu_lobe *out);
+/* Of a table of averages whose values are not made yet: V at a node, and whether an angle matters there. */
+int mu_albedo_means_view(const albedo_means *means, int rough, int shape, int angle, double v[4]);
+/* The lobe but for its averages. */
+void mu_albedo_means_aim(const albedo_means *means, const albedo_open *open, const double v[4], mu_lobe *out);
+static inline size_t albedo_means_node(const albedo_means *m, int rough, int shape, int angle) {
+    return ALBEDO_MEANS_KINDS * (size_t)((rough * ALBEDO_MEANS_SHAPES + shape) * m->angles + angle);
+}
 
 /* The frame in which a table of a lobe is read. */
 static inline const mu_albedo_frame *lobe_frame(const mu_lobe *l, const mu_albedo *t) {
     return t->quadrants == 1 ? &l->frame : &t->frame;
 }
 
-/* What is lost toward w, on a side, by integration: lobe_lost where a patch is open. */
+/* A closure of single scattering toward w, on a side; 0 if it sees nothing. */
+int mu_albedo_bind_at(const albedo_open *open, const mu_lobe *l, int side, const float w[3], mu_closure_f *c);
+/* What is lost there, by integration: lobe_lost where a patch is open. */
 float mu_albedo_lost_at(const mu_lobe *l, int side, const float w[3]);
 
 /* The average of a lobe, by integration. */
@@ -108,13 +152,28 @@ static inline double lobe_average(const mu_lobe *l, int side) {
     return sum;
 }
 
-/* So many directions are drawn by their cosine alone: within a cell E may be anything, and so might weights be. */
-static const float lobe_even = 0.125f;
+/* So many directions are drawn by their cosine alone: within a cell E may be anything, and so might weights be. Without tables
+ * half are, and the others evenly over u and S, which bounds weights at the horizon of what is smooth. */
+static const float lobe_even = 0.125f, lobe_blind = 0.5f;
+/* Has u and S of a lobe's own frame, S a logarithm. */
+static inline mu_albedo lobe_square(const mu_lobe *l) {
+    return (mu_albedo){
+        .frame = l->frame, .quadrants = 1, .columns = ALBEDO_COLUMNS, .side = {{.worldly = 1}}};
+}
+static inline float lobe_blind_density(const mu_lobe *l, const float w[3]) {
+    const mu_albedo t = lobe_square(l);
+    return fminf((1 - lobe_blind) / 4 * albedo_root(&t, &t.side[0], &l->frame, w).stretch, 0x1p+126f) +
+           lobe_blind * 0.31830989f * w[2];
+}
 
 /* What is lost toward w, on a side, as tables say it, and the density of lobe_draw, 1/sr; `open`: it is not near enough. */
 static inline float lobe_told(const mu_lobe *l, int side, const float w[3], float *density, int *open) {
     float lost = 0;
     *density = 0, *open = l->open;
+    if (!l->count) {
+        *density = lobe_blind_density(l, w), *open = 1;
+        return 1;
+    }
     for (int k = 0; k < l->count; k++) {
         const mu_albedo *t = l->level[k];
         const albedo_place at = albedo_locate(t, &t->side[side], lobe_frame(l, t), w);
@@ -134,12 +193,19 @@ static inline float lobe_lost(const mu_lobe *l, int side, const float w[3], floa
 }
 
 static inline void lobe_draw(const mu_lobe *l, int side, float u0, float u1, float w[3]) {
-    if (u0 < lobe_even) { /* by the cosine */
-        const float r = sqrtf(u0 / lobe_even), phi = 6.2831853f * u1;
-        w[0] = r * cosf(phi), w[1] = r * sinf(phi), w[2] = sqrtf(fmaxf(1 - u0 / lobe_even, 1e-14f));
+    const float even = l->count ? lobe_even : lobe_blind;
+    if (u0 < even) { /* by the cosine */
+        const float r = sqrtf(u0 / even), phi = 6.2831853f * u1;
+        w[0] = r * cosf(phi), w[1] = r * sinf(phi), w[2] = sqrtf(fmaxf(1 - u0 / even, 1e-14f));
         return;
     }
-    u0 = (u0 - lobe_even) / (1 - lobe_even);
+    u0 = fminf((u0 - even) / (1 - even), 0x0.ffffffp0f);
+    if (!l->count) {
+        const mu_albedo square = lobe_square(l);
+        const int quadrant = (int)(4 * u0);
+        mu_albedo_direction(&square, &square.side[0], &l->frame, quadrant, 4 * u0 - (float)quadrant, u1, w);
+        return;
+    }
     int k = 0;
     while (k < l->count - 1 && u0 >= l->share[k]) u0 -= l->share[k++];
     const mu_albedo *t = l->level[k];

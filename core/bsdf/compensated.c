@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The musurf authors */
 /*
  * compensated.c: single scattering and a smooth lobe that makes up for what it loses, after Kelemen & Szirmay-Kalos 2001
- * and Kulla & Conty 2017, for any distribution under any constant map, with tilt, on both sides of what transmits.
+ * and Kulla & Conty 2017, for any distribution under any map, with tilt, on both sides of what transmits.
  *
  * With lost(w) = 1 - E(w) as albedo.h interpolates it, and A its cosine-weighted average over the side that wi is on,
  *     f_ms = (1 - passes) lost(wo) lost(wi) / (pi A) F_ms        reflected
@@ -12,7 +12,7 @@
  * walks on this very surface end (albedo.c).
  *
  * Sampled by one of both lobes, as likely as each sends light on; pdf is that of the mixture. Where the surface is bound
- * with an M of the point, and has no tables for it, scattering is single.
+ * with an M of the point, and was not made for that (compensation_varies), scattering is single.
  */
 #include "core/bsdf/multiple.h"
 
@@ -41,12 +41,12 @@ void MU(compensated_bind)(closure *c, real blur, int moved) {
     const mu_albedo_set *set = multiple_of(c->surface)->tables;
     double v[4];
     for (int k = 0; k < 4; k++) v[k] = (double)(c->map.view[k] / c->map.view_z);
-    if (moved && set->grid.table)
-        mu_albedo_grid_choose(blur > 0 ? &set->blurred : &set->grid, v, l);
+    if (moved && set->means.value)
+        mu_albedo_set_choose_moved(set, (float)blur, v, l);
     else if (blur > 0)
         mu_albedo_set_choose_blurred(set, (float)blur, v, l);
     else
-        mu_albedo_set_choose(set, l);
+        mu_albedo_set_choose(set, v, l);
     if (c->surface->transmission) { /* reciprocity: passes average is the same from both sides but for eta² */
         const float eta2 = (float)square(c->surface->fresnel.a[0]), above = l->average[0],
                     below = l->average[1] * eta2, passes = fminf(l->passes[0] * above, below);

@@ -88,11 +88,6 @@ static int check_histogram(const mu_definition *d, mu_complaint *why) {
     return largest > 0 ? 1 : refuse(why, "histogram", "all weights are 0: one at least must be larger");
 }
 
-/* All azimuths alike, before M. */
-static int is_even(const mu_definition *d) {
-    return d->tilt[0] == 0 && d->tilt[1] == 0 && d->ndf != MU_TABULATED && d->ndf != MU_CUSTOM;
-}
-
 static int check_multiple(const mu_definition *d, mu_complaint *why) {
     if (d->multiple == MU_COMPENSATED && !(d->compensation_error >= 1e-4 && d->compensation_error <= 0.5))
         return complain(why, "compensation_error", d->compensation_error,
@@ -109,11 +104,6 @@ static int check_multiple(const mu_definition *d, mu_complaint *why) {
         right = "a random walk needs the visible sampler: it meets visible normals";
     } else if (d->multiple == MU_COMPENSATED && d->ndf == MU_CUSTOM && !d->custom_f) {
         right = "compensated needs custom_f: its tables are made in float";
-    } else if (d->multiple == MU_COMPENSATED && d->compensation_varies && d->transmission) {
-        right = "compensated needs reflection alone, or a constant M: the random walk takes any";
-    } else if (d->multiple == MU_COMPENSATED && d->compensation_varies && !is_even(d)) {
-        right = "compensated needs a level distribution that is isotropic before M, or a constant M: the "
-                "random walk takes any";
     }
     return right ? refuse(why, "multiple", right) : 1;
 }

@@ -130,11 +130,11 @@ typedef struct mu_definition {
     unsigned salt; /* of the random walk's hash: another salt, another noise */
     /* Of compensation: what a directional albedo of its tables may be off, 1e-4 ... 0.5: they are refined until it is kept. */
     double compensation_error;
-    /* True: tables for an M of the point too (mu_bind), of reflection by what is level, and isotropic before M, at slope
-     * roughnesses of up to 2 along its axes (coarser tables reach to 18); else such an M scatters singly. Takes seconds. */
+    /* True: an M of the point scatters so, too (mu_bind), any; else singly. Of reflection by what is level, and isotropic before M, tables
+     * serve, at slope roughnesses of up to 2 along its axes; beyond, and of all else, albedos are integrated while shading. Takes seconds. */
     int compensation_varies;
     /* True: tables for what mu_blur makes of it, too, which take most of the time there: else a blurred closure scatters
-     * singly. GGX of compensation_varies has them anyway. */
+     * singly. Level GGX of compensation_varies has them anyway; what is not level has none under an M of the point. */
     int compensation_blurs;
     /* True: the tables were made with another surface of this very definition (mu_surface_tables), of either precision, which
      * must outlive this one. Its size does not ask which. */
@@ -254,10 +254,12 @@ typedef struct mu_lobe {
     const mu_albedo_set *set;
     float blur; /* of mu_blur; or 0 */
     int open;   /* between two tables that are too far apart */
+    int moved;  /* its M is R(turn) `transform`, cosine and sine of `turn`, and none of the definition's */
+    float transform[4], turn[2]; /* where it is integrated */
     float average[2], passes[2];
     float lost, density; /* of wo: the lobe's own density of it */
     float repeated[3];   /* what F leaves of light that was reflected twice or more */
-    int count;           /* 0: scatters singly */
+    int count;           /* 0: no table says how it lies; it is integrated */
 } mu_lobe;
 
 #define MU_REAL       float

@@ -72,6 +72,9 @@ MU_REAL MU_SUFFIX(mu_surface_tables_unsure)(const MU_SUFFIX(mu_surface) * surfac
 /* The share of what leaves a side, by the cosine, for which they have no value that is near enough, of the worse side: there the
  * albedo is integrated while shading, in 20 to 250 microseconds. */
 MU_REAL MU_SUFFIX(mu_surface_tables_open)(const MU_SUFFIX(mu_surface) * surface);
+/* Of an M of the point (compensation_varies) they have values up to this slope roughness along both axes, and beyond it albedos are
+ * integrated so: 0 if there are none; infinite if no such M is meant. */
+MU_REAL MU_SUFFIX(mu_surface_tables_reach)(const MU_SUFFIX(mu_surface) * surface);
 size_t MU_SUFFIX(mu_surface_table_bytes)(const MU_SUFFIX(mu_surface) * surface);
 /* What the definition came down to: "ggx", "gtr table", "mirror", ... */
 const char *MU_SUFFIX(mu_surface_name)(const MU_SUFFIX(mu_surface) * surface);

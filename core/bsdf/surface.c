@@ -162,7 +162,9 @@ real MU(mu_albedo)(const surface *s, const real w[3], real *average) {
     if (!s->compensated) return 1;
     mu_lobe lobe;
     float density;
-    mu_albedo_set_choose(multiple_of(s)->tables, &lobe);
+    double v[4];
+    for (int k = 0; k < 4; k++) v[k] = (double)(s->map.view[k] / s->map.view_z);
+    mu_albedo_set_choose(multiple_of(s)->tables, v, &lobe);
     const int side = s->transmission && w[2] < 0;
     const float turn = w[2] < 0 ? -1.0f : 1.0f,
                 up[3] = {turn * (float)w[0], turn * (float)w[1], turn * (float)w[2]};
@@ -178,7 +180,12 @@ real MU(mu_surface_tables_unsure)(const surface *s) {
 real MU(mu_surface_tables_open)(const surface *s) {
     if (!s->compensated) return 0;
     const mu_albedo *t = &multiple_of(s)->tables->level[0];
+    if (!multiple_of(s)->tables->levels) return 1;
     return R(s->transmission ? fmaxf(t->side[0].open, t->side[1].open) : t->side[0].open);
+}
+real MU(mu_surface_tables_reach)(const surface *s) {
+    const mu_albedo_set *set = s->compensated ? multiple_of(s)->tables : NULL;
+    return set && set->means.value ? R(set->grid.table ? mu_albedo_grid_reach(&set->grid) : 0) : R(INFINITY);
 }
 const char *MU(mu_surface_name)(const surface *s) {
     return s->name;

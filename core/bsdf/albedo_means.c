@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The musurf authors */
+/*
+ * albedo_means.c: averages of what is lost, over all M of the point: what a lobe needs besides the albedos of both directions, which
+ * are integrated (albedo_open.c). Not in the papers.
+ *
+ * A turn of the world changes no average. So with L L^T the second moments of slopes about 0, in slope units, they depend on
+ *     L^T V = Q diag(a, b) R,   V = s M^-1,
+ * through a >= b, of which world slopes have the root mean squares along the axes, and the angle of Q, which says what slopes are spread along a:
+ * of what is level and isotropic not even through that. Slopes L^-1 p have the second moments 1, however far the mean is from 0, or
+ * steep a histogram: nothing is narrow in the angle. It is that of a line, to pi; where the mean is all that tells azimuths apart, they
+ * are mirrored at it. Toward a = b it does not matter: ln(a/b) and twice the angle are polar coordinates.
+ *
+ * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) at even steps to 8
+ * halvings below the lesser of a and 1, where b is 0. Polynomials of third degree through four nodes along each. Below the first
+ * node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
+ * measured by tests/bench_compensation.c.
+ */
+#include "core/bsdf/albedo_maker.h"
+#include "core/bsdf/albedo_set.h"
+#include "core/bsdf/distribution.h"
+#include "core/bsdf/singular.h"
+
+#if MU_REAL_BITS == 24
+
+enum { ROUGH = ALBEDO_MEANS_ROUGH, SHAPES = ALBEDO_MEANS_SHAPES, NODES = 4, KINDS = ALBEDO_MEANS_KINDS };
+static const double first = -2.3, last = 2.3; /* x */
+static const double smooth = 8, soft = 2;     /* halvings of b; log2 a within which 1 takes over from a */
+
+static double rough_at(const albedo_means *m, double x) {
+    return m->middle + m->wide * sinh(x);
+}
+/* log2(a/b) at most. */
+static double shapes_to(double rough) {
+    return smooth + (rough + hypot(rough, soft)) / 2;
+}
+
+/* t of which t + t^3 is 2 x (Cardano). */
+static double shape_at(double x) {
+    const double root = sqrt(x * x + 1.0 / 27);
+    return cbrt(root + x) - cbrt(root - x);
+}
+
+/* Third degree through four nodes of n, or three and that before the first, which the caller knows. Returns the first. */
+static int stencil(double t, int n, int before, double weight[NODES]) {
+    int i = (int)floor(t) - 1;
+    if (i > n - NODES) i = n - NODES;
+    if (i < -before) i = -before;
+    const double x = t - i - 1;
+    weight[0] = -x * (x - 1) * (x - 2) / 6, weight[1] = (x + 1) * (x - 1) * (x - 2) / 2;
+    weight[2] = -(x + 1) * x * (x - 2) / 2, weight[3] = (x + 1) * x * (x - 1) / 6;
+    return i;
+}
+
+/* The angle of a node whose number may be out of range. */
+static int angle_of(const albedo_means *m, int k) {
+    const int last_one = m->angles - 1;
+    if (!m->even) return ((k % m->angles) + m->angles) % m->angles;
+    k = k < 0 ? -k : k;
+    return k > last_one ? 2 * last_one - k : k;
+}
+/* A quarter turn on. */
+static int across(const albedo_means *m, int k) {
+    return m->even ? m->angles - 1 - k : (k + m->angles / 2) % m->angles;
+}
+
+/* Sums over angles and shapes at a roughness. */
+static void sum_rough(const albedo_means *m, int rough, int shape, const double by_shape[NODES], int angle,
+                      const double by_angle[NODES], double sums[KINDS]) {
+    const int angles = m->angles > 1 ? NODES : 1;
+    for (int kind = 0; kind < KINDS; kind++) sums[kind] = 0;
+    for (int j = 0; j < NODES; j++)
+        for (int k = 0; k < angles; k++) {
+            const int at = m->angles > 1 ? angle_of(m, angle + k) : 0, behind = shape + j < 0;
+            const float *const v = m->value + albedo_means_node(m, rough, behind ? 1 : shape + j,
+                                                                behind && m->angles > 1 ? across(m, at) : at);
+            const double weight = by_shape[j] * (angles > 1 ? by_angle[k] : 1);
+            for (int kind = 0; kind < KINDS; kind++) sums[kind] += weight * (double)v[kind];
+        }
+}
+
+static void look_up(const albedo_means *m, double log_a, double log_ratio, double angle, double out[KINDS]) {
+    const double step = (last - first) / (ROUGH - 1), x = asinh((log_a - m->middle) / m->wide),
+                 t = fmin(fmax((x - first) / step, 0), ROUGH - 1), below = log_a - rough_at(m, first),
+                 turns = m->even ? angle / (PI / 2) * (m->angles - 1) : angle / PI * m->angles;
+    const double rough = fmin(fmax(log_a, rough_at(m, first)), rough_at(m, last)),
+                 s = shape_at(fmin(log_ratio / shapes_to(rough), 1)) * (SHAPES - 1);
+    double by_rough[NODES], by_shape[NODES], by_angle[NODES] = {1, 0, 0, 0}, sums[KINDS];
+    const int i = stencil(t, ROUGH, 0, by_rough), j = stencil(s, SHAPES, 1, by_shape),
+              k = m->angles > 1 ? (int)floor(turns) - 1 : 0;
+    if (m->angles > 1) (void)stencil(turns - k, NODES, 0, by_angle);
+    for (int kind = 0; kind < KINDS; kind++) out[kind] = 0;
+    for (int n = 0; n < NODES; n++) {
+        sum_rough(m, i + n, j, by_shape, k, by_angle, sums);
+        for (int kind = 0; kind < KINDS; kind++) out[kind] += by_rough[n] * sums[kind];
+    }
+    if (!(below < 0)) return;
+    double next[KINDS];
+    sum_rough(m, 0, j, by_shape, k, by_angle, sums), sum_rough(m, 1, j, by_shape, k, by_angle, next);
+    for (int kind = 0; kind < 2; kind++)
+        out[kind] += below * (next[kind] - sums[kind]) / (rough_at(m, first + step) - rough_at(m, first));
+}
+
+/* L^T V. */
+static void spread(const albedo_means *m, const double v[4], double out[4]) {
+    for (int i = 0; i < 2; i++)
+        out[i] = m->root[0] * v[i] + m->root[1] * v[2 + i], out[2 + i] = m->root[2] * v[2 + i];
+}
+
+void mu_albedo_means_aim(const albedo_means *m, const albedo_open *open, const double v[4], mu_lobe *out) {
+    double wide[4];
+    spread(m, v, wide);
+    mu_albedo_lay(wide, &out->frame);
+    out->count = 0, out->open = out->moved = 1;
+    /* V = R(left) diag R(right): M = R(-right) s diag^-1 R(-left) */
+    const singular s = singular_of(v);
+    const double left = (s.sum + s.difference) / 2, right = (s.sum - s.difference) / 2,
+                 x = open->source.surface->unit / s.large, y = open->source.surface->unit / s.small;
+    out->turn[0] = (float)cos(right), out->turn[1] = (float)-sin(right);
+    out->transform[0] = (float)(x * cos(left)), out->transform[1] = (float)(x * sin(left));
+    out->transform[2] = (float)(-y * sin(left)), out->transform[3] = (float)(y * cos(left));
+}
+
+void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, const double v[4], mu_lobe *out) {
+    double wide[4], mean[KINDS];
+    mu_albedo_means_aim(m, open, v, out);
+    spread(m, v, wide);
+    const singular s = singular_of(wide);
+    double angle = (s.sum + s.difference) / 2 - m->axis;
+    angle -= PI * floor(angle / PI);
+    if (m->even && angle > PI / 2) angle = PI - angle;
+    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
+    /* what is lost is above 0 everywhere */
+    for (int side = 0; side < 2; side++) out->average[side] = fminf((float)exp(mean[side]) + ALBEDO_LEAST, 1);
+    out->passes[0] = fminf(fmaxf((float)mean[2], 0), 1);
+}
+
+int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
+    const double log_a = rough_at(m, first + (last - first) * rough / (ROUGH - 1)), a = exp2(log_a),
+                 t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
+                 all = m->even ? PI / 2 / (m->angles > 1 ? m->angles - 1 : 1) : PI / m->angles,
+                 turn = m->axis + all * angle, c = cos(turn), s = sin(turn),
+                 wide[4] = {a * c, -b * s, a * s, b * c};
+    for (int i = 0; i < 2; i++) {
+        v[2 + i] = wide[2 + i] / m->root[2];
+        v[i] = (wide[i] - m->root[1] * v[2 + i]) / m->root[0];
+    }
+    return shape > 0 && m->angles > 1;
+}
+
+#endif

@@ -9,11 +9,11 @@
  * through a >= b, of which world slopes have the root mean squares along the axes, and the angle of Q, which says what slopes are spread along a:
  * of what is level and isotropic not even through that. Slopes L^-1 p have the second moments 1, however far the mean is from 0, or
  * steep a histogram: nothing is narrow in the angle. It is that of a line, to pi; where the mean is all that tells azimuths apart, they
- * are mirrored at it. Toward a = b it does not matter: ln(a/b) and twice the angle are polar coordinates.
+ * are mirrored at it. Where a = b it does not matter.
  *
- * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) at even steps to 8
- * halvings below the lesser of a and 1, where b is 0. Polynomials of third degree through four nodes along each. Below the first
- * node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
+ * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) to 8
+ * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both,
+ * trigonometric ones in the angle. Below the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
  * measured by tests/bench_compensation.c.
  */
 #include "core/bsdf/albedo_maker.h"
@@ -41,62 +41,59 @@ static double shape_at(double x) {
     return cbrt(root + x) - cbrt(root - x);
 }
 
-/* Third degree through four nodes of n, or three and that before the first, which the caller knows. Returns the first. */
-static int stencil(double t, int n, int before, double weight[NODES]) {
+/* Third degree through four nodes of n. Returns the first. */
+static int stencil(double t, int n, double weight[NODES]) {
     int i = (int)floor(t) - 1;
     if (i > n - NODES) i = n - NODES;
-    if (i < -before) i = -before;
+    if (i < 0) i = 0;
     const double x = t - i - 1;
     weight[0] = -x * (x - 1) * (x - 2) / 6, weight[1] = (x + 1) * (x - 1) * (x - 2) / 2;
     weight[2] = -(x + 1) * x * (x - 2) / 2, weight[3] = (x + 1) * x * (x - 1) / 6;
     return i;
 }
 
-/* The angle of a node whose number may be out of range. */
-static int angle_of(const albedo_means *m, int k) {
-    const int last_one = m->angles - 1;
-    if (!m->even) return ((k % m->angles) + m->angles) % m->angles;
-    k = k < 0 ? -k : k;
-    return k > last_one ? 2 * last_one - k : k;
-}
-/* A quarter turn on. */
-static int across(const albedo_means *m, int k) {
-    return m->even ? m->angles - 1 - k : (k + m->angles / 2) % m->angles;
+/* Between angles: the trigonometric polynomial through all of them, in cosines of even multiples if it is even. */
+static void weigh_angles(const albedo_means *m, double angle, double weight[ALBEDO_MEANS_ANGLES]) {
+    const int n = m->angles, most = m->even ? n - 1 : n / 2;
+    for (int j = 0; j < n; j++) {
+        const double at = m->even ? PI / 2 * j / (n > 1 ? n - 1 : 1) : PI * j / n;
+        double sum = 0.5;
+        for (int k = 1; k <= most; k++)
+            sum += (k == most ? 0.5 : 1) *
+                   (m->even ? cos(2 * k * angle) * cos(2 * k * at) : cos(2 * k * (angle - at)));
+        weight[j] =
+            n == 1 ? 1 : (m->even && (j == 0 || j == n - 1) ? 1.0 : 2.0) * sum / (m->even ? n - 1 : n);
+    }
 }
 
 /* Sums over angles and shapes at a roughness. */
-static void sum_rough(const albedo_means *m, int rough, int shape, const double by_shape[NODES], int angle,
-                      const double by_angle[NODES], double sums[KINDS]) {
-    const int angles = m->angles > 1 ? NODES : 1;
+static void sum_rough(const albedo_means *m, int rough, int shape, const double by_shape[NODES],
+                      const double by_angle[ALBEDO_MEANS_ANGLES], double sums[KINDS]) {
     for (int kind = 0; kind < KINDS; kind++) sums[kind] = 0;
     for (int j = 0; j < NODES; j++)
-        for (int k = 0; k < angles; k++) {
-            const int at = m->angles > 1 ? angle_of(m, angle + k) : 0, behind = shape + j < 0;
-            const float *const v = m->value + albedo_means_node(m, rough, behind ? 1 : shape + j,
-                                                                behind && m->angles > 1 ? across(m, at) : at);
-            const double weight = by_shape[j] * (angles > 1 ? by_angle[k] : 1);
-            for (int kind = 0; kind < KINDS; kind++) sums[kind] += weight * (double)v[kind];
+        for (int k = 0; k < m->angles; k++) {
+            const float *const v = m->value + albedo_means_node(m, rough, shape + j, k);
+            for (int kind = 0; kind < KINDS; kind++)
+                sums[kind] += by_shape[j] * by_angle[k] * (double)v[kind];
         }
 }
 
 static void look_up(const albedo_means *m, double log_a, double log_ratio, double angle, double out[KINDS]) {
     const double step = (last - first) / (ROUGH - 1), x = asinh((log_a - m->middle) / m->wide),
-                 t = fmin(fmax((x - first) / step, 0), ROUGH - 1), below = log_a - rough_at(m, first),
-                 turns = m->even ? angle / (PI / 2) * (m->angles - 1) : angle / PI * m->angles;
+                 t = fmin(fmax((x - first) / step, 0), ROUGH - 1), below = log_a - rough_at(m, first);
     const double rough = fmin(fmax(log_a, rough_at(m, first)), rough_at(m, last)),
                  s = shape_at(fmin(log_ratio / shapes_to(rough), 1)) * (SHAPES - 1);
-    double by_rough[NODES], by_shape[NODES], by_angle[NODES] = {1, 0, 0, 0}, sums[KINDS];
-    const int i = stencil(t, ROUGH, 0, by_rough), j = stencil(s, SHAPES, 1, by_shape),
-              k = m->angles > 1 ? (int)floor(turns) - 1 : 0;
-    if (m->angles > 1) (void)stencil(turns - k, NODES, 0, by_angle);
+    double by_rough[NODES], by_shape[NODES], by_angle[ALBEDO_MEANS_ANGLES], sums[KINDS];
+    const int i = stencil(t, ROUGH, by_rough), j = stencil(s, SHAPES, by_shape);
+    weigh_angles(m, angle, by_angle);
     for (int kind = 0; kind < KINDS; kind++) out[kind] = 0;
     for (int n = 0; n < NODES; n++) {
-        sum_rough(m, i + n, j, by_shape, k, by_angle, sums);
+        sum_rough(m, i + n, j, by_shape, by_angle, sums);
         for (int kind = 0; kind < KINDS; kind++) out[kind] += by_rough[n] * sums[kind];
     }
     if (!(below < 0)) return;
     double next[KINDS];
-    sum_rough(m, 0, j, by_shape, k, by_angle, sums), sum_rough(m, 1, j, by_shape, k, by_angle, next);
+    sum_rough(m, 0, j, by_shape, by_angle, sums), sum_rough(m, 1, j, by_shape, by_angle, next);
     for (int kind = 0; kind < 2; kind++)
         out[kind] += below * (next[kind] - sums[kind]) / (rough_at(m, first + step) - rough_at(m, first));
 }

@@ -18,8 +18,8 @@
 
 #if MU_REAL_BITS == 24
 
-/* How many points there may be; of those, how many for an error of 1 % of all four quadrants, or of one that is like the others, and of
- * what transmits, where an albedo takes the longest. One of so many slopes of a histogram is taken. */
+/* How many points there may be; of those, how many for an error of 1 %: of all four quadrants, and of one that is like the others. One of
+ * so many slopes of a histogram is taken. */
 enum { FIRST = 1, LAST = 7, MANY = 5, FEWER = 4, SPARSE = 8, MEANS_WALKS = 256 };
 static const int fibonacci[LAST + 1] = {13, 21, 34, 55, 89, 144, 233, 377};
 
@@ -38,8 +38,7 @@ static double folded(double t, double *stretch) {
 }
 
 static double average_of(const albedo_open *open, const mu_lobe *l, int side, int even) {
-    const int usual = even || open->source.surface->transmission ? FEWER : MANY,
-              more = usual - (int)lround(log2(open->source.error / 0.01)),
+    const int usual = even ? FEWER : MANY, more = usual - (int)lround(log2(open->source.error / 0.01)),
               at = more < FIRST  ? FIRST
                    : more > LAST ? LAST
                                  : more;
@@ -83,7 +82,7 @@ static void find_root(const albedo_source *source, albedo_means *out) {
     const double along = x / out->root[0];
     out->axis = x != 0 || y != 0 ? atan2((y - out->root[1] * along) / out->root[2], along) : 0;
     out->even = !(s->kernel->traits & ANISOTROPIC);
-    out->angles = !out->even ? ALBEDO_MEANS_ANGLES : x != 0 || y != 0 ? ALBEDO_MEANS_ANGLES / 2 : 1;
+    out->angles = !out->even ? ALBEDO_MEANS_ANGLES : x != 0 || y != 0 ? ALBEDO_MEANS_ANGLES / 2 + 1 : 1;
 }
 
 size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,

@@ -13,7 +13,8 @@
  *
  * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) to 8
  * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both,
- * trigonometric ones in the angle. Below the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
+ * trigonometric ones in the angle. What is lost grows with the mean slope in the world, which has a cusp where it turns, and with a²: averages are told as
+ * parts of that. Below the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
  * measured by tests/bench_compensation.c.
  */
 #include "core/bsdf/albedo_maker.h"
@@ -123,13 +124,24 @@ void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, cons
     mu_albedo_means_aim(m, open, v, out);
     spread(m, v, wide);
     const singular s = singular_of(wide);
+    const double about = mu_albedo_means_about(m, v);
     double angle = (s.sum + s.difference) / 2 - m->axis;
     angle -= PI * floor(angle / PI);
     if (m->even && angle > PI / 2) angle = PI - angle;
     look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
     /* what is lost is above 0 everywhere */
-    for (int side = 0; side < 2; side++) out->average[side] = fminf((float)exp(mean[side]) + ALBEDO_LEAST, 1);
+    for (int side = 0; side < 2; side++)
+        out->average[side] = fminf((float)(about * exp(mean[side])) + ALBEDO_LEAST, 1);
     out->passes[0] = fminf(fmaxf((float)mean[2], 0), 1);
+}
+
+double mu_albedo_means_about(const albedo_means *m, const double v[4]) {
+    double wide[4];
+    spread(m, v, wide);
+    const double a = singular_of(wide).large,
+                 q = hypot(v[0] * m->mean[0] + v[2] * m->mean[1], v[1] * m->mean[0] + v[3] * m->mean[1]) +
+                     a * a;
+    return q / (1 + q);
 }
 
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {

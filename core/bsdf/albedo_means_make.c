@@ -76,6 +76,7 @@ static void find_root(const albedo_source *source, albedo_means *out) {
         yy = 2 * (double)(r[1] * r[1] + r[2] * r[2]);
     }
     xx += x * x, xy += x * y, yy += y * y;
+    out->mean[0] = x, out->mean[1] = y;
     out->root[0] = sqrt(xx), out->root[1] = xy / out->root[0];
     out->root[2] = sqrt(fmax(yy - out->root[1] * out->root[1], 1e-12 * yy));
     /* L^-1 of the mean */
@@ -106,7 +107,8 @@ size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open
                 mu_albedo_means_aim(out, open, v, &l);
                 at[1] = at[2] = 0;
                 for (int side = 0; side < sides; side++)
-                    at[side] = (float)log(average_of(open, &l, side, out->angles == 1));
+                    at[side] = (float)log(average_of(open, &l, side, out->angles == 1) /
+                                          mu_albedo_means_about(out, v));
                 if (sides == 1) continue;
                 albedo_source there = *source;
                 there.transform = l.transform;

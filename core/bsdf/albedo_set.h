@@ -68,6 +68,7 @@ typedef struct albedo_means {
     const float *value; /* NULL: there are none */
     double root
         [3]; /* the second moments of slopes about 0 are L L^T, L = [root[0] 0; root[1] root[2]], in slope units */
+    double mean[2];      /* of slopes, in slope units */
     double axis;         /* from which the angle is measured */
     double middle, wide; /* of log2 of roughnesses */
     int angles, even;    /* 1: no angle matters; even: from 0 to pi/2, mirrored at both */
@@ -127,6 +128,8 @@ void mu_albedo_means_choose(const albedo_means *means, const albedo_open *open, 
                             mu_lobe *out);
 /* Of a table of averages whose values are not made yet: V at a node, and whether an angle matters there. */
 int mu_albedo_means_view(const albedo_means *means, int rough, int shape, int angle, double v[4]);
+/* About what is lost on average. */
+double mu_albedo_means_about(const albedo_means *means, const double v[4]);
 /* The lobe but for its averages. */
 void mu_albedo_means_aim(const albedo_means *means, const albedo_open *open, const double v[4], mu_lobe *out);
 static inline size_t albedo_means_node(const albedo_means *m, int rough, int shape, int angle) {

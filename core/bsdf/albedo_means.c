@@ -42,6 +42,15 @@ static double shape_at(double x) {
     return cbrt(root + x) - cbrt(root - x);
 }
 
+/* Of n angles that are even, one, from 0 to 1. */
+static double angle_at(int n, int j) {
+    return (1 - cos(PI * j / (n - 1))) / 2;
+}
+/* About where the mean slope lies along the smoother axis, so far from there what is lost changes: the sine. */
+static double cusp(double a, double b) {
+    return fmin(hypot(b / a, fmin(a,1)),1);
+}
+
 /* Third degree through four nodes of n. Returns the first. */
 static int stencil(double t, int n, double weight[NODES]) {
     int i = (int)floor(t) - 1;
@@ -53,18 +62,23 @@ static int stencil(double t, int n, double weight[NODES]) {
     return i;
 }
 
-/* Between angles: the trigonometric polynomial through all of them, in cosines of even multiples if it is even. */
-static void weigh_angles(const albedo_means *m, double angle, double weight[ALBEDO_MEANS_ANGLES]) {
-    const int n = m->angles, most = m->even ? n - 1 : n / 2;
+/* Between angles: the trigonometric polynomial through all of them; if it is even, the polynomial through Chebyshev's nodes. */
+static void weigh_angles(const albedo_means *m, double at, double weight[ALBEDO_MEANS_ANGLES]) {
+    const int n = m->angles;
+    double sum = 0;
+    if (n == 1) weight[0] = 1;
+    if (n == 1) return;
     for (int j = 0; j < n; j++) {
-        const double at = m->even ? PI / 2 * j / (n > 1 ? n - 1 : 1) : PI * j / n;
-        double sum = 0.5;
-        for (int k = 1; k <= most; k++)
-            sum += (k == most ? 0.5 : 1) *
-                   (m->even ? cos(2 * k * angle) * cos(2 * k * at) : cos(2 * k * (angle - at)));
-        weight[j] =
-            n == 1 ? 1 : (m->even && (j == 0 || j == n - 1) ? 1.0 : 2.0) * sum / (m->even ? n - 1 : n);
+        if (m->even) { /* barycentric (Berrut & Trefethen 2004) */
+            const double off = at - angle_at(n, j);
+            weight[j] = (j % 2 ? -1 : 1) * (j == 0 || j == n - 1 ? 0.5 : 1) / (fabs(off) > 1e-9 ? off : 1e-9);
+        } else {
+            weight[j] = 0.5 + 0.5 * cos(n * (at - PI * j / n));
+            for (int k = 1; k < n / 2; k++) weight[j] += cos(2 * k * (at - PI * j / n));
+        }
+        sum += weight[j];
     }
+    for (int j = 0; j < n; j++) weight[j] /= sum;
 }
 
 /* Sums over angles and shapes at a roughness. */
@@ -127,8 +141,8 @@ void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, cons
     const double about = mu_albedo_means_about(m, v);
     double angle = (s.sum + s.difference) / 2 - m->axis;
     angle -= PI * floor(angle / PI);
-    if (m->even && angle > PI / 2) angle = PI - angle;
-    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
+    const double near = cusp(s.large, fabs(s.small));
+    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), m->even ? asinh(fabs(cos(angle)) / near) / asinh(1 / near) : angle, mean);
     /* what is lost is above 0 everywhere */
     for (int side = 0; side < 2; side++)
         out->average[side] = fminf((float)(about * exp(mean[side])) + ALBEDO_LEAST, 1);
@@ -147,8 +161,10 @@ double mu_albedo_means_about(const albedo_means *m, const double v[4]) {
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
     const double log_a = rough_at(m, first + (last - first) * rough / (ROUGH - 1)), a = exp2(log_a),
                  t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
-                 all = m->even ? PI / 2 / (m->angles > 1 ? m->angles - 1 : 1) : PI / m->angles,
-                 turn = m->axis + all * angle, c = cos(turn), s = sin(turn),
+                 near = cusp(a, b),
+                 all = m->even ? (m->angles > 1 ? PI / 2 - asin(fmin(near * sinh(asinh(1 / near) * angle_at(m->angles, angle)), 1)) : 0)
+                               : PI / m->angles * angle,
+                 turn = m->axis + all, c = cos(turn), s = sin(turn),
                  wide[4] = {a * c, -b * s, a * s, b * c};
     for (int i = 0; i < 2; i++) {
         v[2 + i] = wide[2 + i] / m->root[2];

@@ -65,6 +65,17 @@ static double average_of(const albedo_open *open, const mu_lobe *l, int side, in
     return fmax(lost / all, 1e-12);
 }
 
+void mu_albedo_means_measure(const albedo_means *m, const albedo_open *open, const mu_lobe *l,
+                             double mean[ALBEDO_MEANS_KINDS]) {
+    const int sides = open->source.surface->transmission ? 2 : 1, even = m->angles == 1;
+    for (int side = 0; side < 2; side++) mean[side] = side < sides ? average_of(open, l, side, even) : 1;
+    mean[2] = 0;
+    if (sides == 1) return;
+    albedo_source there = open->source;
+    there.transform = l->transform;
+    mean[2] = 1 - mu_albedo_share_above(&there, MEANS_WALKS);
+}
+
 /* Of the slopes of a surface, in slope units: what M widens. */
 static void find_root(const albedo_source *source, albedo_means *out) {
     const surface *const s = source->surface;
@@ -83,12 +94,12 @@ static void find_root(const albedo_source *source, albedo_means *out) {
     const double along = x / out->root[0];
     out->axis = x != 0 || y != 0 ? atan2((y - out->root[1] * along) / out->root[2], along) : 0;
     out->even = !(s->kernel->traits & ANISOTROPIC);
-    out->angles = !out->even ? ALBEDO_MEANS_ANGLES : x != 0 || y != 0 ? ALBEDO_MEANS_ANGLES / 2 + 1 : 1;
+    out->angles = !out->even ? ALBEDO_MEANS_ANGLES : x != 0 || y != 0 ? ALBEDO_MEANS_EVEN : 1;
 }
 
 size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,
                             albedo_means *out) {
-    const int sides = source->surface->transmission ? 2 : 1, is_gtr = source->definition->ndf == MU_GTR;
+    const int is_gtr = source->definition->ndf == MU_GTR;
     /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
     const double core = is_gtr ? fmin(1, (double)source->surface->alpha / source->surface->unit) : 1;
     *out = (albedo_means){.value = values, .middle = -log2(core) / 2, .wide = 2 - log2(core) / 4};
@@ -104,15 +115,12 @@ size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open
                         at[kind] = at[kind - ALBEDO_MEANS_KINDS];
                     continue;
                 }
+                double mean[ALBEDO_MEANS_KINDS];
                 mu_albedo_means_aim(out, open, v, &l);
-                at[1] = at[2] = 0;
-                for (int side = 0; side < sides; side++)
-                    at[side] = (float)log(average_of(open, &l, side, out->angles == 1) /
-                                          mu_albedo_means_about(out, v));
-                if (sides == 1) continue;
-                albedo_source there = *source;
-                there.transform = l.transform;
-                at[2] = (float)(1 - mu_albedo_share_above(&there, MEANS_WALKS));
+                mu_albedo_means_measure(out, open, &l, mean);
+                for (int side = 0; side < 2; side++)
+                    at[side] = (float)log(mean[side] / mu_albedo_means_about(out, v));
+                at[2] = (float)mean[2];
             }
     return (size_t)(ALBEDO_MEANS_KINDS * ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * out->angles);
 }

@@ -61,6 +61,7 @@ enum {
     ALBEDO_MEANS_ROUGH = 12,
     ALBEDO_MEANS_SHAPES = 8,
     ALBEDO_MEANS_ANGLES = 8,
+    ALBEDO_MEANS_EVEN = 6,
     ALBEDO_MEANS_KINDS = 3, /* ln of the average above, and below; passes above */
     ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS
 };
@@ -123,6 +124,9 @@ float mu_albedo_grid_reach(const albedo_grid *grid);
 /* Makes the averages of what `open` integrates, in `values`, of ALBEDO_MEANS_FLOATS; how many it took. */
 size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,
                             albedo_means *out);
+/* What is lost on average, above and below, and passes above: by integration. */
+void mu_albedo_means_measure(const albedo_means *means, const albedo_open *open, const mu_lobe *l,
+                             double mean[ALBEDO_MEANS_KINDS]);
 /* The lobe of V = s M^-1, to be integrated. */
 void mu_albedo_means_choose(const albedo_means *means, const albedo_open *open, const double v[4],
                             mu_lobe *out);

@@ -12,10 +12,12 @@
  * are mirrored at it. Where a = b it does not matter.
  *
  * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) to 8
- * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both,
- * trigonometric ones in the angle. What is lost grows with the mean slope in the world, which has a cusp where it turns, and with a²: averages are told as
- * parts of that. Below the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is off, is
- * measured by tests/bench_compensation.c.
+ * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both.
+ * What is lost grows with the mean slope in the world, which has a cusp where it lies along the smoother axis, and with a²: averages are told as
+ * parts of that. From there on it changes as the sine of the angle grows to b/a, and to a: where azimuths are mirrored the angle is
+ * told by asinh(sine / hypot(b/a, a)), in a polynomial through Chebyshev's nodes; else by itself, in a trigonometric one. Below
+ * the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is
+ * off, is measured by tests/bench_compensation.c.
  */
 #include "core/bsdf/albedo_maker.h"
 #include "core/bsdf/albedo_set.h"
@@ -42,13 +44,19 @@ static double shape_at(double x) {
     return cbrt(root + x) - cbrt(root - x);
 }
 
-/* Of n angles that are even, one, from 0 to 1. */
+/* Of n > 1 nodes, as from_cusp tells angles. */
 static double angle_at(int n, int j) {
     return (1 - cos(PI * j / (n - 1))) / 2;
 }
-/* About where the mean slope lies along the smoother axis, so far from there what is lost changes: the sine. */
+/* The sine of an angle from where the mean slope lies along the smoother axis, from 0 to 1; and back. */
 static double cusp(double a, double b) {
-    return fmin(hypot(b / a, fmin(a,1)),1);
+    return fmin(fmax(hypot(b / a, a), 1e-12), 1);
+}
+static double from_cusp(double sine, double a, double b) {
+    return asinh(sine / cusp(a, b)) / asinh(1 / cusp(a, b));
+}
+static double to_sine(double t, double a, double b) {
+    return fmin(cusp(a, b) * sinh(t * asinh(1 / cusp(a, b))), 1);
 }
 
 /* Third degree through four nodes of n. Returns the first. */
@@ -73,7 +81,7 @@ static void weigh_angles(const albedo_means *m, double at, double weight[ALBEDO_
             const double off = at - angle_at(n, j);
             weight[j] = (j % 2 ? -1 : 1) * (j == 0 || j == n - 1 ? 0.5 : 1) / (fabs(off) > 1e-9 ? off : 1e-9);
         } else {
-            weight[j] = 0.5 + 0.5 * cos(n * (at - PI * j / n));
+            weight[j] = (1 + cos(n * (at - PI * j / n))) / 2;
             for (int k = 1; k < n / 2; k++) weight[j] += cos(2 * k * (at - PI * j / n));
         }
         sum += weight[j];
@@ -141,8 +149,8 @@ void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, cons
     const double about = mu_albedo_means_about(m, v);
     double angle = (s.sum + s.difference) / 2 - m->axis;
     angle -= PI * floor(angle / PI);
-    const double near = cusp(s.large, fabs(s.small));
-    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), m->even ? asinh(fabs(cos(angle)) / near) / asinh(1 / near) : angle, mean);
+    if (m->even) angle = from_cusp(fabs(cos(angle)), s.large, fabs(s.small));
+    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
     /* what is lost is above 0 everywhere */
     for (int side = 0; side < 2; side++)
         out->average[side] = fminf((float)(about * exp(mean[side])) + ALBEDO_LEAST, 1);
@@ -161,11 +169,9 @@ double mu_albedo_means_about(const albedo_means *m, const double v[4]) {
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
     const double log_a = rough_at(m, first + (last - first) * rough / (ROUGH - 1)), a = exp2(log_a),
                  t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
-                 near = cusp(a, b),
-                 all = m->even ? (m->angles > 1 ? PI / 2 - asin(fmin(near * sinh(asinh(1 / near) * angle_at(m->angles, angle)), 1)) : 0)
-                               : PI / m->angles * angle,
-                 turn = m->axis + all, c = cos(turn), s = sin(turn),
-                 wide[4] = {a * c, -b * s, a * s, b * c};
+                 from = m->even ? PI / 2 - asin(to_sine(m->angles > 1 ? angle_at(m->angles, angle) : 1, a, b))
+                                : PI / m->angles * angle,
+                 turn = m->axis + from, c = cos(turn), s = sin(turn), wide[4] = {a * c, -b * s, a * s, b * c};
     for (int i = 0; i < 2; i++) {
         v[2 + i] = wide[2 + i] / m->root[2];
         v[i] = (wide[i] - m->root[1] * v[2 + i]) / m->root[0];

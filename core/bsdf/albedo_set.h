@@ -61,7 +61,7 @@ enum {
     ALBEDO_MEANS_ROUGH = 12,
     ALBEDO_MEANS_SHAPES = 8,
     ALBEDO_MEANS_ANGLES = 8,
-    ALBEDO_MEANS_EVEN = 6,
+    ALBEDO_MEANS_EVEN = 6,  /* if azimuths are mirrored at the mean slope */
     ALBEDO_MEANS_KINDS = 3, /* ln of the average above, and below; passes above */
     ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS
 };
@@ -72,7 +72,7 @@ typedef struct albedo_means {
     double mean[2];      /* of slopes, in slope units */
     double axis;         /* from which the angle is measured */
     double middle, wide; /* of log2 of roughnesses */
-    int angles, even;    /* 1: no angle matters; even: from 0 to pi/2, mirrored at both */
+    int angles, even;    /* 1: no angle matters; even: mirrored at 0 and pi/2 */
 } albedo_means;
 
 static inline int albedo_grid_node(int i, int j) {

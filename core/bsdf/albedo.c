@@ -36,12 +36,9 @@ void mu_albedo_measure(const albedo_source *s, albedo_lengths *out) {
 }
 
 float mu_albedo_lost(const albedo_source *s, const closure *c) {
-    if (s->slopes && c->kernel->traits & HAS_JUMPS) {
-        s->effort->facets +=
-            ALBEDO_SLOPES / 4; /* a slope, whose density is not sought, takes a quarter of a facet's time */
-        return 1 - (s->stride ? mu_albedo_of_slopes(c, s->slopes, s->begin, s->stride)
-                              : mu_albedo_of_slopes(c, s->slopes, 0, 1));
-    }
+    if (s->slopes && c->kernel->traits & HAS_JUMPS)
+        return 1 - mu_albedo_of_slopes(c, s->slopes, s->stride ? s->begin : 0, s->stride ? s->stride : 1,
+                                       s->effort);
     return 1 - MU(albedo_integral)(c, s->lengths[is_blurred(s, c)], s->allowed, s->effort);
 }
 

@@ -248,6 +248,6 @@ typedef struct albedo_slope {
 } albedo_slope;
 void mu_albedo_slopes(const mu_surface_f *s, albedo_slope out[ALBEDO_SLOPES]);
 float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES], int begin,
-                          int stride);
+                          int stride, albedo_effort *effort);
 
 #endif

@@ -31,13 +31,20 @@ void mu_albedo_slopes(const mu_surface_f *s, albedo_slope out[ALBEDO_SLOPES]) {
     }
 }
 
+/* In facets, of 100 to 160 ns: a slope that nothing passes takes 5 ns, for no masking is sought; others 55, and 110 where light is
+ * transmitted, too. */
+static size_t work_of(const mu_closure_f *c, int slopes, int passing) {
+    return (size_t)(passing * (c->surface->transmission ? 12 : 6) + slopes - passing) / 16;
+}
+
 float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBEDO_SLOPES], int begin,
-                          int stride) {
+                          int stride, albedo_effort *effort) {
     const double z = (double)c->map.view_z, v[4] = {(double)c->map.view[0] / z, (double)c->map.view[1] / z,
                                                     (double)c->map.view[2] / z, (double)c->map.view[3] / z};
     const double tilt[2] = {(double)c->map.tilt[0], (double)c->map.tilt[1]},
                  o[3] = {(double)c->wo[0], (double)c->wo[1], (double)c->wo[2]};
     double sum = 0, area = 0;
+    int passing = 0;
     if (!(o[2] > 0)) return 1;
     for (int n = begin; n < ALBEDO_SLOPES; n += stride) {
         const double p[2] = {slopes[n].p[0] - tilt[0], slopes[n].p[1] - tilt[1]};
@@ -46,9 +53,12 @@ float mu_albedo_of_slopes(const mu_closure_f *c, const albedo_slope slopes[ALBED
         if (!(seen > 0)) continue;
         const double length = sqrt(m[0] * m[0] + m[1] * m[1] + 1),
                      unit[3] = {m[0] / length, m[1] / length, 1 / length};
-        sum += slopes[n].weight * seen * MU(albedo_passed)(c, unit, seen / length);
+        const double passed = MU(albedo_passed)(c, unit, seen / length);
+        passing += passed > 0;
+        sum += slopes[n].weight * seen * passed;
         area += slopes[n].weight * seen;
     }
+    effort->facets += work_of(c, (ALBEDO_SLOPES - begin + stride - 1) / stride, passing);
     /* the area is better known: of what hardly loses anything what these slopes are off of it must not count as lost */
     return area > 0 ? (float)fmin(sum / area * ((double)c->sigma / z / o[2]), 1) : 0;
 }

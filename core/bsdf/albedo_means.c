@@ -26,7 +26,7 @@
 
 #if MU_REAL_BITS == 24
 
-enum { ROUGH = ALBEDO_MEANS_ROUGH, SHAPES = ALBEDO_MEANS_SHAPES, NODES = 4, KINDS = ALBEDO_MEANS_KINDS };
+enum { SHAPES = ALBEDO_MEANS_SHAPES, NODES = 4, KINDS = ALBEDO_MEANS_KINDS };
 static const double first = -2.3, last = 2.3; /* x */
 static const double smooth = 8, soft = 2;     /* halvings of b; log2 a within which 1 takes over from a */
 
@@ -102,12 +102,12 @@ static void sum_rough(const albedo_means *m, int rough, int shape, const double 
 }
 
 static void look_up(const albedo_means *m, double log_a, double log_ratio, double angle, double out[KINDS]) {
-    const double step = (last - first) / (ROUGH - 1), x = asinh((log_a - m->middle) / m->wide),
-                 t = fmin(fmax((x - first) / step, 0), ROUGH - 1), below = log_a - rough_at(m, first);
+    const double step = (last - first) / (m->rows - 1), x = asinh((log_a - m->middle) / m->wide),
+                 t = fmin(fmax((x - first) / step, 0), m->rows - 1), below = log_a - rough_at(m, first);
     const double rough = fmin(fmax(log_a, rough_at(m, first)), rough_at(m, last)),
                  s = shape_at(fmin(log_ratio / shapes_to(rough), 1)) * (SHAPES - 1);
     double by_rough[NODES], by_shape[NODES], by_angle[ALBEDO_MEANS_ANGLES], sums[KINDS];
-    const int i = stencil(t, ROUGH, by_rough), j = stencil(s, SHAPES, by_shape);
+    const int i = stencil(t, m->rows, by_rough), j = stencil(s, SHAPES, by_shape);
     weigh_angles(m, angle, by_angle);
     for (int kind = 0; kind < KINDS; kind++) out[kind] = 0;
     for (int n = 0; n < NODES; n++) {
@@ -167,7 +167,7 @@ double mu_albedo_means_about(const albedo_means *m, const double v[4]) {
 }
 
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
-    const double log_a = rough_at(m, first + (last - first) * rough / (ROUGH - 1)), a = exp2(log_a),
+    const double log_a = rough_at(m, first + (last - first) * rough / (m->rows - 1)), a = exp2(log_a),
                  t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
                  from = m->even ? PI / 2 - asin(to_sine(m->angles > 1 ? angle_at(m->angles, angle) : 1, a, b))
                                 : PI / m->angles * angle,

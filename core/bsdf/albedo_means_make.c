@@ -95,7 +95,9 @@ static void find_root(const albedo_source *source, albedo_means *out) {
     const double along = x / out->root[0];
     out->axis = x != 0 || y != 0 ? atan2((y - out->root[1] * along) / out->root[2], along) : 0;
     out->even = !(s->kernel->traits & ANISOTROPIC);
-    out->angles = !out->even ? ALBEDO_MEANS_ANGLES : x != 0 || y != 0 ? ALBEDO_MEANS_EVEN : 1;
+    out->angles = !out->even         ? ALBEDO_MEANS_ANGLES
+                  : x != 0 || y != 0 ? (source->error > 0.05 ? ALBEDO_MEANS_COARSE : ALBEDO_MEANS_EVEN)
+                                     : 1;
 }
 
 size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,
@@ -105,7 +107,10 @@ size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open
     const double core = is_gtr ? fmin(1, (double)source->surface->alpha / source->surface->unit) : 1;
     *out = (albedo_means){.value = values, .middle = -log2(core) / 2, .wide = 2 - log2(core) / 4};
     find_root(source, out);
-    for (int i = 0; i < ALBEDO_MEANS_ROUGH; i++)
+    /* what of it is refracted turns with angles in the world up to slopes of some hundred */
+    out->rows = out->angles > 1 && source->surface->transmission ? ALBEDO_MEANS_ROUGH : ALBEDO_MEANS_FEW;
+    if (out->rows > ALBEDO_MEANS_FEW) out->middle++;
+    for (int i = 0; i < out->rows; i++)
         for (int j = 0; j < ALBEDO_MEANS_SHAPES; j++)
             for (int k = 0; k < out->angles; k++) {
                 double v[4];
@@ -123,7 +128,7 @@ size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open
                     at[side] = (float)log(mean[side] / mu_albedo_means_about(out, v));
                 at[2] = (float)mean[2];
             }
-    return (size_t)(ALBEDO_MEANS_KINDS * ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * out->angles);
+    return (size_t)(ALBEDO_MEANS_KINDS * out->rows * ALBEDO_MEANS_SHAPES * out->angles);
 }
 
 #endif

@@ -58,11 +58,13 @@ typedef struct albedo_grid {
 
 /* Averages over all M of the point (albedo_means.c). */
 enum {
-    ALBEDO_MEANS_ROUGH = 12,
+    ALBEDO_MEANS_ROUGH = 15,
+    ALBEDO_MEANS_FEW = 12, /* of what is not both tilted and transmits */
     ALBEDO_MEANS_SHAPES = 8,
     ALBEDO_MEANS_ANGLES = 8,
-    ALBEDO_MEANS_EVEN = 6,  /* if azimuths are mirrored at the mean slope */
-    ALBEDO_MEANS_KINDS = 3, /* ln of the average above, and below; passes above */
+    ALBEDO_MEANS_EVEN = 6,   /* if azimuths are mirrored at the mean slope */
+    ALBEDO_MEANS_COARSE = 4, /* so, where more than 5 % may be off */
+    ALBEDO_MEANS_KINDS = 3,  /* ln of the average above, and below; passes above */
     ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS
 };
 typedef struct albedo_means {
@@ -72,6 +74,7 @@ typedef struct albedo_means {
     double mean[2];      /* of slopes, in slope units */
     double axis;         /* from which the angle is measured */
     double middle, wide; /* of log2 of roughnesses */
+    int rows;            /* along a */
     int angles, even;    /* 1: no angle matters; even: mirrored at 0 and pi/2 */
 } albedo_means;
 

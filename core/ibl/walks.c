@@ -28,8 +28,10 @@
 #include "core/bsdf/real.h"
 
 /* Facets after which light is made to meet another; numbers given, of two facets with cliffs; points of a lattice at first, and at most. */
-enum { FORCED = 2, NUMBERS = 10, SHIFTS = 8, FIRST = 128, MOST = 1 << 11 };
+enum { FORCED = 2, NUMBERS = 10, SHIFTS = 8, FIRST = 128, MOST = 1 << 14 };
 static const uint32_t vector[NUMBERS] = {1, 182667, 469891, 498753, 110745, 446179, 250185, 118627, 245333, 283199};
+/* The standard error that walks are asked for at least, a quarter of what an albedo may be off, 1e-3. */
+#define ERROR 2.5e-4
 /* A direction in float is rounded by 2^-25 of that. */
 #define LEAST_SIGMA 1e-4
 /* Directions asked for one facet, at most, and of cliffs. */
@@ -180,7 +182,7 @@ int MU(mu_ibl_albedo_of_walks)(const closure *c, const mu_ibl_slopes *still, dou
     if (!leave_once(&a, still, allowed, once)) return 0;
     const double more = fmax(1 - once[3], 0);
     for (uint32_t s = 0; s < SHIFTS; s++) take(&a, FIRST, 0, 1, s, by[s]);
-    for (uint32_t count = FIRST; more * share_of(by, share) > allowed && count < MOST; count *= 2)
+    for (uint32_t count = FIRST; more * share_of(by, share) > fmax(allowed, ERROR) && count < MOST; count *= 2)
         for (uint32_t s = 0; s < SHIFTS; s++) {
             double next[EVEN_PARTS];
             take(&a, 2 * count, 1, 2, s, next);

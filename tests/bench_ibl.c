@@ -261,7 +261,7 @@ int main(int argc, char **argv) {
     if (!lights) stop(error.text);
     b.tracer = (mu_tracer){.scene = scene, .geometry = geometry, .lights = lights, .samples = b.samples,
                            .footprints = (mu_features_of(scene) & (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0};
-    mu_image_light *const light = mu_image_light_make(&b.tracer, MANY, mu_processors(), &error);
+    mu_image_light *const light = mu_image_light_make(&b.tracer, MANY, mu_processors(), NULL, &error);
     if (!light) stop(error.text);
     b.tracer.image_light = light;
     measure_all(&b, light, entries, count);

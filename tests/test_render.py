@@ -310,6 +310,16 @@ class Render(unittest.TestCase):
                 process.send_signal(number)
                 self.assertEqual(process.wait(timeout=10), 130)
 
+    def test_a_signal_while_light_is_prepared_ends_it(self):
+        """No sample is taken any more, nothing is written, not even that it was interrupted. The material takes seconds to prepare."""
+        walk = {"material": "musurf.microfacet", "ndf": "ggx", "alpha": 0.3, "tilt": [0.3, 0.1], "fresnel": {"conductor": "Au"}, "multiple_scattering": "random_walk"}
+        pathlib.Path(self.scene).write_text(json.dumps(dict(SCENE, materials={"clay": walk}, lights=SCENE["lights"][:1])))
+        with self.start("-o", self.path("out.exr"), "--integrator", "lobe") as process:
+            self.assertEqual(json.loads(process.stderr.readline()), {"event": "preparing", "done": 0, "of": 1})
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.stderr.read(), "")
+        self.assertEqual((process.returncode, self.files()), (130, ["scene.json"]))
+
     def test_warnings_go_where_asked(self):
         pathlib.Path(self.scene).write_text(json.dumps(dict(SCENE, lights=[{"type": "constant", "radiance": 1e6}])))
         arguments = [self.scene, "-o", self.path("out.exr"), "--spp", "1"]

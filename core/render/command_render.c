@@ -29,7 +29,7 @@
 
 /* When the first signal came, in tenths of a second of steady time; 0: none yet. */
 static volatile sig_atomic_t interrupted;
-/* There is something to save. Before, while files are read, a signal quits at once. */
+/* There may be something to save. Before, while files are read and light is prepared, a signal quits at once. */
 static volatile sig_atomic_t rendering;
 
 /* A second signal quits at once, but not one that follows on the heels of the first: timeout(1) and terminals
@@ -140,9 +140,15 @@ static mu_image_info info(const mu_job *job) {
 /* ------------------------------------------------------------------------------------------------ rendering
  */
 
+/* Asked from the first sample on. */
 static _Bool stop(void *job) {
     (void)job;
+    rendering = 1;
     return interrupted != 0;
+}
+
+static void prepare(void *job, uint32_t done, uint32_t count) {
+    mu_progress_prepare(&((mu_job *)job)->progress, done, count);
 }
 
 static void report(void *job, const mu_render_status *status) {
@@ -224,7 +230,7 @@ static int render(mu_job *job, uint32_t limit) {
                                    .seconds = options->seconds,
                                    .noise = options->noise};
     const mu_render_watch watch = {
-        .context = job, .stop = stop, .report = report, .checkpoint = checkpoint, .checkpoint_seconds = 60};
+        .context = job, .prepare = prepare, .stop = stop, .report = report, .checkpoint = checkpoint, .checkpoint_seconds = 60};
     switch (mu_render_scene(&job->film, &job->scene, job->geometry, job->lights, &limits, &watch, &error)) {
     case MU_RENDER_DONE:
         return give_image(job);
@@ -304,7 +310,6 @@ static int run(mu_job *job, int argc, char **argv) {
     if (!job->lights) return complain(job, &error, MU_EXIT_REFUSED);
     if (options->explain && !mu_explain(&job->scene, job->lights, stdout, &error))
         return complain(job, &error, MU_EXIT_FAILED);
-    rendering = 1;
     return options->output ? render(job, limit) : MU_EXIT_OK;
 }
 

@@ -219,7 +219,8 @@ static _Bool survey_picture(survey *s, uint32_t threads, mu_error *error) {
     return 1;
 }
 
-static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error) {
+static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint32_t pictures, uint32_t threads,
+                            const mu_render_watch *watch, mu_error *error) {
     const mu_scene *scene = tracer->scene;
     light->count = scene->material_count;
     light->materials = calloc((size_t)light->count + 1, sizeof *light->materials);
@@ -230,6 +231,7 @@ static _Bool make_materials(mu_image_light *light, const mu_tracer *tracer, uint
     _Bool good = survey_picture(&s, threads, error);
     for (uint32_t m = 0; good && m < light->count; m++) {
         lit_material *own = &light->materials[m];
+        if (watch && watch->prepare) watch->prepare(watch->context, m, light->count);
         const musurf_material_type *type = scene->materials[m].material.type;
         own->slopes = type->extension ? type->extension(MUSURF_SLOPES_ID) : NULL;
         good = mu_albedo_table_make(&own->albedo, &scene->materials[m].material, own->source.map, &own->source.moments,
@@ -273,14 +275,15 @@ void mu_image_light_choose(mu_image_light *light, const mu_integrator_settings *
     }
 }
 
-mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error) {
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads,
+                                    const mu_render_watch *watch, mu_error *error) {
     mu_image_light *light = calloc(1, sizeof *light);
     if (!light) {
         mu_fail(error, "not enough memory");
         return NULL;
     }
     light->samples = tracer->samples;
-    if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, pictures, threads, error) &&
+    if (mu_image_light_takes(tracer->scene, error) && make_materials(light, tracer, pictures, threads, watch, error) &&
         (light->memory = mu_filtered_make(&light->globe, tracer->lights, threads, error))) {
         mu_image_light_choose(light, &tracer->scene->integrator);
         return light;

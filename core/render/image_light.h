@@ -13,14 +13,17 @@
 #define MU_IMAGE_LIGHT_H
 
 #include "core/render/integrator.h"
+#include "core/render/render.h"
 
 typedef struct mu_image_light mu_image_light;
 
 /* Whether a scene with a technique is one that it lights: not with a light that is nowhere around, or a material whose lobe
  * is not known, refracts or is blended. A scene without one always is. */
 _Bool mu_image_light_takes(const mu_scene *scene, mu_error *error);
-/* For a tracer whose scene has a technique, and so many pictures of it. NULL on failure: what is not taken, or memory. */
-mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads, mu_error *error);
+/* For a tracer whose scene has a technique, and so many pictures of it; watch, which may be NULL, is told of materials as they
+ * are done. NULL on failure: what is not taken, or memory. */
+mu_image_light *mu_image_light_make(const mu_tracer *tracer, uint32_t pictures, uint32_t threads,
+                                    const mu_render_watch *watch, mu_error *error);
 /* Another technique, of a light that was made: nothing is made anew. Not while others use it. */
 void mu_image_light_choose(mu_image_light *image_light, const mu_integrator_settings *settings);
 /* Other lights around the scene: filtered, tables stay. Not while others use it. After a failure it is only to be freed. */

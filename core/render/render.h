@@ -43,6 +43,8 @@ typedef struct mu_render_status {
 /* Called on the thread that called mu_render. While `checkpoint` runs the film rests and may be saved. */
 typedef struct mu_render_watch {
     void *context;
+    /* Before the first sample, of an environment that is filtered in advance: so many of all materials are done; may be NULL. */
+    void (*prepare)(void *context, uint32_t done, uint32_t count);
     _Bool (*stop)(void *context);                                  /* polled every 50 ms; may be NULL */
     void (*report)(void *context, const mu_render_status *status); /* every 100 ms; may be NULL */
     void (*checkpoint)(void *context, const mu_film *film);        /* may be NULL */

@@ -50,13 +50,26 @@ static void draw(mu_progress *progress, const mu_render_status *status) {
     progress->drawn = 1;
 }
 
+static void put(mu_progress *progress, const char *key, double value) {
+    mu_json_number(&progress->json, key, value < 0 ? (double)NAN : value); /* unknown becomes null */
+}
+
+void mu_progress_prepare(mu_progress *progress, uint32_t done, uint32_t count) {
+    if (progress->show == MU_SHOW_BAR) {
+        fprintf(stderr, "\rpreparing the light: material %u of %u\033[K", done + 1, count);
+        progress->drawn = 1;
+    }
+    if (progress->show != MU_SHOW_JSON) return;
+    mu_json_begin(&progress->json);
+    mu_json_string(&progress->json, "event", "preparing");
+    put(progress, "done", done);
+    put(progress, "of", count);
+    mu_json_write(&progress->json, stderr);
+}
+
 void mu_progress_clear(mu_progress *progress) {
     if (progress->drawn) fputs("\r\033[K", stderr);
     progress->drawn = 0;
-}
-
-static void put(mu_progress *progress, const char *key, double value) {
-    mu_json_number(&progress->json, key, value < 0 ? (double)NAN : value); /* unknown becomes null */
 }
 
 void mu_progress_report(mu_progress *progress, const mu_render_status *status) {

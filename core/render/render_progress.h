@@ -18,6 +18,8 @@ typedef struct mu_progress {
 
 mu_progress mu_progress_begin(const mu_render_options *options);
 void mu_progress_report(mu_progress *progress, const mu_render_status *status);
+/* Before the first sample: so many materials are ready for the light. */
+void mu_progress_prepare(mu_progress *progress, uint32_t done, uint32_t count);
 /* Takes the bar away, before something else is written. */
 void mu_progress_clear(mu_progress *progress);
 /* A remark in between. */

@@ -20,7 +20,7 @@ mu_render_end mu_render_scene(mu_film *film, const mu_scene *scene, const mu_geo
                         .footprints = (mu_features_of(scene) & (MU_FEATURE_FOOTPRINTS | MU_FEATURE_TEXTURES)) != 0,
                         .samples = limits->samples < MU_MOST_SAMPLES ? limits->samples : scene->integrator.samples};
     mu_image_light *image_light = NULL;
-    if (scene->integrator.by_image && !(image_light = mu_image_light_make(&tracer, 1, limits->threads, error)))
+    if (scene->integrator.by_image && !(image_light = mu_image_light_make(&tracer, 1, limits->threads, watch, error)))
         return MU_RENDER_FAILED;
     tracer.image_light = image_light;
     mu_render_plan plan = *limits;

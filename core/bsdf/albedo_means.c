@@ -13,9 +13,9 @@
  *
  * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) to 8
  * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both.
- * What is lost grows with the mean slope in the world, which has a cusp where it lies along the smoother axis, and with a²: averages are told as
- * parts of that. From there on it changes as the sine of the angle grows to b/a, and to a: where azimuths are mirrored the angle is
- * told by asinh(sine / hypot(b/a, a)), in a polynomial through Chebyshev's nodes; else by itself, in a trigonometric one. Below
+ * What is lost grows with the mean slope in the world, which has a cusp where it lies along the smoother axis, and with k a^p: averages are told as
+ * parts of both, k and p measured. From there on it changes as the sine of the angle grows to b/a, and to k a^(p-1): where azimuths are mirrored the angle is
+ * told by asinh(sine / hypot(b/a, k a^(p-1))), in a polynomial through Chebyshev's nodes; else by itself, in a trigonometric one. Below
  * the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is
  * off, is measured by tests/bench_compensation.c.
  */
@@ -49,14 +49,14 @@ static double angle_at(int n, int j) {
     return (1 - cos(PI * j / (n - 1))) / 2;
 }
 /* The sine of an angle from where the mean slope lies along the smoother axis, from 0 to 1; and back. */
-static double cusp(double a, double b) {
-    return fmin(fmax(hypot(b / a, a), 1e-12), 1);
+static double cusp(const albedo_means *m, double a, double b) {
+    return fmin(fmax(hypot(b / a, m->spread * pow(a, m->power - 1)), 1e-12), 1);
 }
-static double from_cusp(double sine, double a, double b) {
-    return asinh(sine / cusp(a, b)) / asinh(1 / cusp(a, b));
+static double from_cusp(double sine, double cusp) {
+    return asinh(sine / cusp) / asinh(1 / cusp);
 }
-static double to_sine(double t, double a, double b) {
-    return fmin(cusp(a, b) * sinh(t * asinh(1 / cusp(a, b))), 1);
+static double to_sine(double t, double cusp) {
+    return fmin(cusp * sinh(t * asinh(1 / cusp)), 1);
 }
 
 /* Third degree through four nodes of n. Returns the first. */
@@ -149,7 +149,7 @@ void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, cons
     const double about = mu_albedo_means_about(m, v);
     double angle = (s.sum + s.difference) / 2 - m->axis;
     angle -= PI * floor(angle / PI);
-    if (m->even) angle = from_cusp(fabs(cos(angle)), s.large, fabs(s.small));
+    if (m->even) angle = from_cusp(fabs(cos(angle)), cusp(m, s.large, fabs(s.small)));
     look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
     /* what is lost is above 0 everywhere */
     for (int side = 0; side < 2; side++)
@@ -162,20 +162,24 @@ double mu_albedo_means_about(const albedo_means *m, const double v[4]) {
     spread(m, v, wide);
     const double a = singular_of(wide).large,
                  q = hypot(v[0] * m->mean[0] + v[2] * m->mean[1], v[1] * m->mean[0] + v[3] * m->mean[1]) +
-                     a * a;
+                     m->spread * pow(a, m->power);
     return q / (1 + q);
+}
+
+void mu_albedo_means_place(const albedo_means *m, double a, double b, double angle, double v[4]) {
+    const double turn = m->axis + angle, c = cos(turn), s = sin(turn),
+                 wide[4] = {a * c, -b * s, a * s, b * c};
+    for (int i = 0; i < 2; i++) {
+        v[2 + i] = wide[2 + i] / m->root[2];
+        v[i] = (wide[i] - m->root[1] * v[2 + i]) / m->root[0];
+    }
 }
 
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
     const double log_a = rough_at(m, first + (last - first) * rough / (m->rows - 1)), a = exp2(log_a),
                  t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
-                 from = m->even ? PI / 2 - asin(to_sine(m->angles > 1 ? angle_at(m->angles, angle) : 1, a, b))
-                                : PI / m->angles * angle,
-                 turn = m->axis + from, c = cos(turn), s = sin(turn), wide[4] = {a * c, -b * s, a * s, b * c};
-    for (int i = 0; i < 2; i++) {
-        v[2 + i] = wide[2 + i] / m->root[2];
-        v[i] = (wide[i] - m->root[1] * v[2 + i]) / m->root[0];
-    }
+                 sine = m->angles > 1 ? to_sine(angle_at(m->angles, angle), cusp(m, a, b)) : 1;
+    mu_albedo_means_place(m, a, b, m->even ? PI / 2 - asin(sine) : PI / m->angles * angle, v);
     return shape > 0 && m->angles > 1;
 }
 

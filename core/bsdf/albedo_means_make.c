@@ -95,9 +95,32 @@ static void find_root(const albedo_source *source, albedo_means *out) {
     const double along = x / out->root[0];
     out->axis = x != 0 || y != 0 ? atan2((y - out->root[1] * along) / out->root[2], along) : 0;
     out->even = !(s->kernel->traits & ANISOTROPIC);
-    out->angles = !out->even         ? ALBEDO_MEANS_ANGLES
-                  : x != 0 || y != 0 ? (source->error > 0.05 ? ALBEDO_MEANS_COARSE : ALBEDO_MEANS_EVEN)
-                                     : 1;
+    out->angles = !out->even             ? ALBEDO_MEANS_ANGLES
+                  : !(x != 0 || y != 0)  ? 1
+                  : source->error > 0.05 ? ALBEDO_MEANS_COARSE
+                  : s->transmission      ? ALBEDO_MEANS_ANGLES
+                                         : ALBEDO_MEANS_EVEN;
+}
+
+/* By what is lost of smooth slopes where their mean lies along a, and, of two a, where it lies along a far smaller b: c (mean + k a^p). */
+static void find_spread(const albedo_open *open, albedo_means *m) {
+    static const double rough[3] = {0x1p-7, 0x1p-7, 0x1p-9};
+    double lost[3], mean[3], part[3];
+    m->spread = 1, m->power = 2;
+    if (!(m->mean[0] != 0 || m->mean[1] != 0)) return;
+    for (int k = 0; k < 3; k++) {
+        double v[4];
+        mu_lobe l;
+        mu_albedo_means_place(m, rough[k], rough[k] / 512, k ? PI / 2 : 0, v);
+        mu_albedo_means_aim(m, open, v, &l);
+        lost[k] = average_of(open, &l, 0, 0);
+        mean[k] = hypot(v[0] * m->mean[0] + v[2] * m->mean[1], v[1] * m->mean[0] + v[3] * m->mean[1]);
+    }
+    const double c = (lost[0] - lost[1]) / (mean[0] - mean[1]);
+    for (int k = 1; k < 3; k++) part[k] = lost[k] / c - mean[k];
+    if (!(c > 0 && part[1] > part[2] && part[2] > 0)) return;
+    m->power = fmin(fmax(log(part[1] / part[2]) / log(rough[1] / rough[2]), 1), 2);
+    m->spread = fmin(fmax(part[1] / pow(rough[1], m->power), 0.1), 10);
 }
 
 size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open, float *values,
@@ -106,7 +129,7 @@ size_t mu_albedo_means_make(const albedo_source *source, const albedo_open *open
     /* gtr of gamma < 1 is measured in slopes of 1, but crowds at alpha too */
     const double core = is_gtr ? fmin(1, (double)source->surface->alpha / source->surface->unit) : 1;
     *out = (albedo_means){.value = values, .middle = -log2(core) / 2, .wide = 2 - log2(core) / 4};
-    find_root(source, out);
+    find_root(source, out), find_spread(open, out);
     /* what of it is refracted turns with angles in the world up to slopes of some hundred */
     out->rows = out->angles > 1 && source->surface->transmission ? ALBEDO_MEANS_ROUGH : ALBEDO_MEANS_FEW;
     if (out->rows > ALBEDO_MEANS_FEW) out->middle++;

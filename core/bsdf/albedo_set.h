@@ -58,12 +58,12 @@ typedef struct albedo_grid {
 
 /* Averages over all M of the point (albedo_means.c). */
 enum {
-    ALBEDO_MEANS_ROUGH = 15,
+    ALBEDO_MEANS_ROUGH = 14,
     ALBEDO_MEANS_FEW = 12, /* of what is not both tilted and transmits */
     ALBEDO_MEANS_SHAPES = 8,
     ALBEDO_MEANS_ANGLES = 8,
-    ALBEDO_MEANS_EVEN = 6,   /* if azimuths are mirrored at the mean slope */
-    ALBEDO_MEANS_COARSE = 4, /* so, where more than 5 % may be off */
+    ALBEDO_MEANS_EVEN = 6,   /* if azimuths are mirrored at the mean slope, of what reflects */
+    ALBEDO_MEANS_COARSE = 4, /* if they are, and more than 5 % may be off */
     ALBEDO_MEANS_KINDS = 3,  /* ln of the average above, and below; passes above */
     ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS
 };
@@ -71,11 +71,12 @@ typedef struct albedo_means {
     const float *value; /* NULL: there are none */
     double root
         [3]; /* the second moments of slopes about 0 are L L^T, L = [root[0] 0; root[1] root[2]], in slope units */
-    double mean[2];      /* of slopes, in slope units */
-    double axis;         /* from which the angle is measured */
-    double middle, wide; /* of log2 of roughnesses */
-    int rows;            /* along a */
-    int angles, even;    /* 1: no angle matters; even: mirrored at 0 and pi/2 */
+    double mean[2];       /* of slopes, in slope units */
+    double axis;          /* from which the angle is measured */
+    double middle, wide;  /* of log2 of roughnesses */
+    double spread, power; /* k and p: k a^p is lost for what is by the mean slope, where both are small */
+    int rows;             /* along a */
+    int angles, even;     /* 1: no angle matters; even: mirrored at 0 and pi/2 */
 } albedo_means;
 
 static inline int albedo_grid_node(int i, int j) {
@@ -135,6 +136,8 @@ void mu_albedo_means_choose(const albedo_means *means, const albedo_open *open, 
                             mu_lobe *out);
 /* Of a table of averages whose values are not made yet: V at a node, and whether an angle matters there. */
 int mu_albedo_means_view(const albedo_means *means, int rough, int shape, int angle, double v[4]);
+/* V of a, b and an angle. */
+void mu_albedo_means_place(const albedo_means *means, double a, double b, double angle, double v[4]);
 /* About what is lost on average. */
 double mu_albedo_means_about(const albedo_means *means, const double v[4]);
 /* The lobe but for its averages. */

@@ -14,8 +14,8 @@
  * Nodes: log2 a = middle + wide sinh x, x at even steps, for all that happens happens about slopes of 1; ln(a/b) to 8
  * halvings below the lesser of a and 1, where b is 0, denser toward a = b. Polynomials of third degree through four nodes along both.
  * What is lost grows with the mean slope in the world, which has a cusp where it lies along the smoother axis, and with k a^p: averages are told as
- * parts of both, k and p measured. From there on it changes as the sine of the angle grows to b/a, and to k a^(p-1): where azimuths are mirrored the angle is
- * told by asinh(sine / hypot(b/a, k a^(p-1))), in a polynomial through Chebyshev's nodes; else by itself, in a trigonometric one. Below
+ * parts of both, k and p measured. From there on it changes as the sine of the angle grows to b/a, and to k a^(p-1): it is told by
+ * asinh(sine / hypot(b/a, k a^(p-1))), in a polynomial through Chebyshev's nodes, of either sign if these are not mirrored. Below
  * the first node averages go on by their power of a, and beyond the last as they are. ln of averages; how many that takes, and what is
  * off, is measured by tests/bench_compensation.c.
  */
@@ -48,9 +48,15 @@ static double shape_at(double x) {
 static double angle_at(int n, int j) {
     return (1 - cos(PI * j / (n - 1))) / 2;
 }
+/* Of either sign of the angle; 0 and the last are of both. */
+static int nodes_of(const albedo_means *m) {
+    return m->even ? m->angles : m->angles / 2 + 1;
+}
 /* The sine of an angle from where the mean slope lies along the smoother axis, from 0 to 1; and back. */
 static double cusp(const albedo_means *m, double a, double b) {
-    return fmin(fmax(hypot(b / a, m->spread * pow(a, m->power - 1)), 1e-12), 1);
+    return m->mean[0] != 0 || m->mean[1] != 0
+               ? fmin(fmax(hypot(b / a, m->spread * pow(a, m->power - 1)), 1e-12), 1)
+               : 1;
 }
 static double from_cusp(double sine, double cusp) {
     return asinh(sine / cusp) / asinh(1 / cusp);
@@ -70,23 +76,21 @@ static int stencil(double t, int n, double weight[NODES]) {
     return i;
 }
 
-/* Between angles: the trigonometric polynomial through all of them; if it is even, the polynomial through Chebyshev's nodes. */
+/* Between angles: the polynomial through Chebyshev's nodes of that sign, barycentric (Berrut & Trefethen 2004). */
 static void weigh_angles(const albedo_means *m, double at, double weight[ALBEDO_MEANS_ANGLES]) {
-    const int n = m->angles;
+    const int n = nodes_of(m);
     double sum = 0;
-    if (n == 1) weight[0] = 1;
-    if (n == 1) return;
-    for (int j = 0; j < n; j++) {
-        if (m->even) { /* barycentric (Berrut & Trefethen 2004) */
-            const double off = at - angle_at(n, j);
-            weight[j] = (j % 2 ? -1 : 1) * (j == 0 || j == n - 1 ? 0.5 : 1) / (fabs(off) > 1e-9 ? off : 1e-9);
-        } else {
-            weight[j] = (1 + cos(n * (at - PI * j / n))) / 2;
-            for (int k = 1; k < n / 2; k++) weight[j] += cos(2 * k * (at - PI * j / n));
+    for (int k = 0; k < m->angles; k++) weight[k] = m->angles == 1;
+    for (int turn = 0; turn < 2 && n > 1; turn++)
+        for (int j = 0; j < n; j++) {
+            const double off = fabs(at) - angle_at(n, j);
+            const double w =
+                (j % 2 ? -1 : 1) * (j == 0 || j == n - 1 ? 0.5 : 1) / (fabs(off) > 1e-9 ? off : 1e-9);
+            if (turn)
+                weight[at < 0 && j > 0 && j < n - 1 ? n + j - 1 : j] = w / sum;
+            else
+                sum += w;
         }
-        sum += weight[j];
-    }
-    for (int j = 0; j < n; j++) weight[j] /= sum;
 }
 
 /* Sums over angles and shapes at a roughness. */
@@ -147,10 +151,9 @@ void mu_albedo_means_choose(const albedo_means *m, const albedo_open *open, cons
     spread(m, v, wide);
     const singular s = singular_of(wide);
     const double about = mu_albedo_means_about(m, v);
-    double angle = (s.sum + s.difference) / 2 - m->axis;
-    angle -= PI * floor(angle / PI);
-    if (m->even) angle = from_cusp(fabs(cos(angle)), cusp(m, s.large, fabs(s.small)));
-    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), angle, mean);
+    const double off = remainder((s.sum + s.difference) / 2 - m->axis - PI / 2, PI),
+                 at = from_cusp(fabs(sin(off)), cusp(m, s.large, fabs(s.small)));
+    look_up(m, log2(s.large), log2(s.large / fabs(s.small)), off < 0 && !m->even ? -at : at, mean);
     /* what is lost is above 0 everywhere */
     for (int side = 0; side < 2; side++)
         out->average[side] = fminf((float)(about * exp(mean[side])) + ALBEDO_LEAST, 1);
@@ -177,9 +180,11 @@ void mu_albedo_means_place(const albedo_means *m, double a, double b, double ang
 
 int mu_albedo_means_view(const albedo_means *m, int rough, int shape, int angle, double v[4]) {
     const double log_a = rough_at(m, first + (last - first) * rough / (m->rows - 1)), a = exp2(log_a),
-                 t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2),
-                 sine = m->angles > 1 ? to_sine(angle_at(m->angles, angle), cusp(m, a, b)) : 1;
-    mu_albedo_means_place(m, a, b, m->even ? PI / 2 - asin(sine) : PI / m->angles * angle, v);
+                 t = (double)shape / (SHAPES - 1), b = exp2(log_a - shapes_to(log_a) * (t + t * t * t) / 2);
+    const int n = nodes_of(m), back = angle >= n;
+    const double off =
+        asin(m->angles > 1 ? to_sine(angle_at(n, back ? angle - n + 1 : angle), cusp(m, a, b)) : 1);
+    mu_albedo_means_place(m, a, b, PI / 2 + (back || m->even ? -off : off), v);
     return shape > 0 && m->angles > 1;
 }
 

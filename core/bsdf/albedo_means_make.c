@@ -98,7 +98,7 @@ static void find_root(const albedo_source *source, albedo_means *out) {
     out->angles = !out->even             ? ALBEDO_MEANS_ANGLES
                   : !(x != 0 || y != 0)  ? 1
                   : source->error > 0.05 ? ALBEDO_MEANS_COARSE
-                  : s->transmission      ? ALBEDO_MEANS_ANGLES
+                  : s->transmission      ? ALBEDO_MEANS_GLASS
                                          : ALBEDO_MEANS_EVEN;
 }
 

@@ -61,8 +61,9 @@ enum {
     ALBEDO_MEANS_ROUGH = 14,
     ALBEDO_MEANS_FEW = 12, /* of what is not both tilted and transmits */
     ALBEDO_MEANS_SHAPES = 8,
-    ALBEDO_MEANS_ANGLES = 8,
-    ALBEDO_MEANS_EVEN = 6,   /* if azimuths are mirrored at the mean slope, of what reflects */
+    ALBEDO_MEANS_ANGLES = 10,
+    ALBEDO_MEANS_GLASS = 8,  /* if azimuths are mirrored at the mean slope, of what transmits */
+    ALBEDO_MEANS_EVEN = 6,   /* and of what does not */
     ALBEDO_MEANS_COARSE = 4, /* if they are, and more than 5 % may be off */
     ALBEDO_MEANS_KINDS = 3,  /* ln of the average above, and below; passes above */
     ALBEDO_MEANS_FLOATS = ALBEDO_MEANS_ROUGH * ALBEDO_MEANS_SHAPES * ALBEDO_MEANS_ANGLES * ALBEDO_MEANS_KINDS

@@ -32,7 +32,7 @@ static mu_definition definition_of(int k, const double *histogram) {
     if (k == TILTED_GLASS) d.tilt[0] = 0.3, d.tilt[1] = -0.5;
     d.multiple = MU_COMPENSATED, d.compensation_varies = 1;
     /* made in less time: averages of tilted glass; and tables of what is less steep, for what is integrated takes no notice */
-    d.compensation_error = (double[]){0.04, 0.2, 0.04, 0.1}[k];
+    d.compensation_error = (double[]){0.04, 0.4, 0.04, 0.1}[k];
     return d;
 }
 

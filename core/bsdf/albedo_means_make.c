@@ -18,7 +18,8 @@
 
 #if MU_REAL_BITS == 24
 
-/* How many points there may be; of those, how many for an error of 1 %: of all four quadrants, and of one that is like the others. One of
+/* How many points there may be; of those, how many for an error of 1 %: of all four quadrants, and of one that is like the others;
+ * of four from below, where total reflection begins on a curve, the next more. One of
  * so many slopes of a histogram is taken, and a quadrature may be off so many times what it may while shading: a mean hardly is. */
 enum { FIRST = 1, LAST = 7, MANY = 5, FEWER = 4, SPARSE = 8, LENIENT = 4, MEANS_WALKS = 256 };
 static const int fibonacci[LAST + 1] = {13, 21, 34, 55, 89, 144, 233, 377};
@@ -39,7 +40,8 @@ static double folded(double t, double *stretch) {
 }
 
 static double average_of(const albedo_open *open, const mu_lobe *l, int side, int even) {
-    const int usual = even ? FEWER : MANY, more = usual - (int)lround(log2(open->source.error / 0.01)),
+    const int usual = (even ? FEWER : MANY) + (side && !even),
+              more = usual - (int)lround(log2(open->source.error / 0.01)),
               at = more < FIRST  ? FIRST
                    : more > LAST ? LAST
                                  : more;

@@ -131,7 +131,8 @@ typedef struct mu_definition {
     /* Of compensation: what a directional albedo of its tables may be off, 1e-4 ... 0.5: they are refined until it is kept. */
     double compensation_error;
     /* True: an M of the point scatters so, too (mu_bind), any; else singly. Of reflection by what is level, and isotropic before M, tables
-     * serve, at slope roughnesses of up to 2 along its axes; beyond, and of all else, albedos are integrated while shading. Takes seconds. */
+     * serve, at slope roughnesses of up to 2 along its axes; beyond, and of all else, albedos are integrated while shading. Takes seconds, of tilted
+     * glass up to a minute. */
     int compensation_varies;
     /* True: tables for what mu_blur makes of it, too, which take most of the time there: else a blurred closure scatters
      * singly. Level GGX of compensation_varies has them anyway; what is not level has none under an M of the point. */

@@ -253,7 +253,10 @@ static void mark(void *context, uint32_t azimuth) {
     const _Bool level = t->azimuths == 1 || t->rows < t->azimuths;
     unsigned char *sharp = t->sharp + (size_t)azimuth * (t->heights - 1);
     seat s;
-    if (!seat_make(w, 0, 0, 0, &s)) return;
+    if (!seat_make(w, 0, 0, 0, &s)) {
+        memset(sharp, 1, t->heights - 1);
+        return;
+    }
     for (uint32_t i = 0; i + 1 < t->heights; i++) {
         const _Bool outermost = i < 3 || i + 4 >= t->heights; /* of nodes that are not told along views */
         float off = 0;

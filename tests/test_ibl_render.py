@@ -132,6 +132,18 @@ class Render(unittest.TestCase):
                 right = over[0] / (1 + sum(max(0, x - 1) for x in over))
                 self.assertLess(numpy.abs(seen[place] - right).max(), 1e-3 + 10 * alpha, (alpha, place))
 
+    def test_even_light_on_a_leaning_mirror(self):
+        """In the same closed form, which has creases where either direction begins to be masked: everywhere on the sphere to 1e-3."""
+        seen, wo = self.even(microfacet(ndf="ggx", alpha=0, tilt=[0.3, 0.2]), samples=MORE)
+        m = numpy.array([-0.3, -0.2, 1])
+        shown = (wo[..., 2] > 0.02) & (abs(numpy.linalg.norm(wo, axis=-1) - 1) < 1e-6)  # and on the sphere
+        over_o = wo @ m / wo[..., 2]
+        i = 2 * (wo @ m / (m @ m))[..., None] * m - wo
+        over_i = numpy.where(i[..., 2] > 0, i @ m / i[..., 2], numpy.inf)
+        right = numpy.where(over_o > 0, over_o / (1 + numpy.maximum(0, over_o - 1) + numpy.maximum(0, over_i - 1)), 0)
+        self.assertGreater(numpy.ptp(right[shown]), 0.5)
+        self.assertLess(numpy.abs(seen[shown] - right[shown][:, None]).max(), 1e-3)
+
     def test_even_light_on_a_little_tilt(self):
         """One that changes f by less than a hundredth: what is seen from opposite sides differs by some 2e-3 nevertheless."""
         material = microfacet(ndf="ggx", alpha=0.3, tilt=[0.0006, 0.0004], transform=[[1, 0], [0, 1]])

@@ -304,7 +304,7 @@ _Bool mu_albedo_table_make(mu_albedo_table *t, const mu_material *material, cons
     mu_rows(t->sigmas[0] * t->sigmas[1] * t->rows, threads, fill, &w);
     for (size_t i = 0; i < mu_albedo_table_bytes(t) / sizeof(float); i++)
         if (!isfinite(t->rgb[i])) return mu_fail(error, "a table of albedos could not be made");
-    if (varies || !rough || blind) return 1;
+    if (varies || blind) return 1;
     unsigned char *sharp = calloc((size_t)mu_albedo_intervals(t) * (t->heights - 1), 1);
     if (!sharp) return mu_fail(error, "not enough memory for a table of albedos");
     t->sharp = sharp;
